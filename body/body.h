@@ -22,17 +22,19 @@
 namespace umtet {
 
 struct LabelVolume;
+struct PiecewiseBody;
 
 /// A body: the level set psi that is meshed, the box that contains it, and the samples that a mesh is compared with.
 /// All lengths and positions are in working coordinates, which are model coordinates minus `shift`.
 struct Domain {
   std::optional<SharedFunction> formula;  ///< has a Hessian; exactly one of these four is set
   std::shared_ptr<const GridLevelSet> grid;
-  std::optional<LevelSet> level_set;            ///< psi with the levels that limit_detail() keeps
-  std::optional<ImplicitFunctionRef> function;  ///< function of the caller, who owns it; has a Hessian
-  std::optional<FittedLevelSet> fitted;         ///< psi with all its levels
-  Box box;                                      ///< box that the background mesh must cover
-  double diagonal = 0;                          ///< diagonal of the cloud's box, or of `box` for a formula
+  std::optional<LevelSet> level_set;               ///< psi with the levels that limit_detail() keeps
+  std::optional<ImplicitFunctionRef> function;     ///< function of the caller, who owns it; has a Hessian
+  std::optional<FittedLevelSet> fitted;            ///< psi with all its levels
+  std::shared_ptr<const PiecewiseBody> piecewise;  ///< patches whose psi is `formula`; null for a smooth body
+  Box box;                                         ///< box that the background mesh must cover
+  double diagonal = 0;                             ///< diagonal of the cloud's box, or of `box` for a formula
   Vec3 shift = Vec3::Zero();
   std::vector<Message> notices;                     ///< notices to the user about how psi was made
   OrientedPointCloud cloud;                         ///< empty for a formula
@@ -54,7 +56,13 @@ struct Domain {
 
   /// An upper bound of |grad psi|. A fitted psi has gradients of length one at its samples, and not much longer ones
   /// elsewhere. The gradient of a formula has no bound.
-  double steepest() const { return level_set ? 2 : std::numeric_limits<double>::infinity(); }
+  double steepest() const {
+    if (has_edges_of_triangles()) return 1;  // psi is a distance
+    return level_set ? 2 : std::numeric_limits<double>::infinity();
+  }
+
+  /// The body is one of triangles with sharp edges, with a function for each smooth patch.
+  bool has_edges_of_triangles() const { return piecewise && triangles; }
 
   bool has_samples() const { return !cloud.points.empty(); }
 

@@ -19,13 +19,16 @@ inline constexpr double kSamplesAnEdge = 2.5;
 struct GivenTriangles {
   TriangleMesh mesh;
   SurfaceDistance distance;
-  TriangleMesh whole;  ///< the triangles that are not partly inside, with their vertices
-  SharpEdges edges;    ///< of these
+  TriangleMesh whole;  ///< the triangles that are not partly inside, with their vertices and without slivers
+  bool is_whole;       ///< no triangle is partly inside
+  SharpEdges edges;    ///< of `whole`
   TriangleBody body;   ///< the body that they bound
 };
 
-/// @param shift  vector that is subtracted from the coordinates
+/// @param shift      vector that is subtracted from the coordinates
+/// @param sure_turn  SharpEdgeParams::sure_turn, degrees
 /// \throw std::invalid_argument  no triangles
-std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift);
+std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift,
+                                                      double sure_turn = SharpEdgeParams().sure_turn);
 
 }  // namespace umtet

@@ -13,6 +13,7 @@ inline constexpr Option viewpoints{"viewpoints"};
 inline constexpr Option columns{"columns"};  ///< parameter of read_scan()
 inline constexpr Option sample_spacing{"triangles.spacing"};
 inline constexpr Option close{"fit.close"};
+inline constexpr Option edges{"fit.edges"};
 inline constexpr Option h{"mesh.h"};
 inline constexpr Option tets{"mesh.tets"};
 inline constexpr Option max_deviation{"mesh.max_deviation"};
@@ -32,7 +33,7 @@ inline constexpr Option accept{"verdict.accept"};
 
 /// All options, so that a test can check the names that front ends give them.
 inline constexpr Option kAll[] = {keep_all,   normals, merge,       flip,          viewpoints,   columns,
-                                  close,      h,       tets,        max_deviation, max_tets,     background,
+                                  close,      edges, h,       tets,        max_deviation, max_tets,     background,
                                   grade,      h_min,   h_max,       max_turn,      grade_inside, box_walls,
                                   complement, sizes,   label_sizes, box,           accept,       sample_spacing};
 

@@ -11,6 +11,7 @@
 #include "mesh/sizes/source_tree.h"
 #include "mesh/universal_mesh.h"
 #include "reconstruct/solve/fit_ssd.h"
+#include "reconstruct/triangles/sharp_edges.h"
 
 // The options of this library. The table of the program, pipeline/case/parameters.def, gives the fields of ScanOptions,
 // FitOptions, MeshOptions and VerdictOptions their flags and ranges; the ranges are checked there.
@@ -21,6 +22,12 @@ enum class NormalsOf {
   Auto,     ///< the normals of the scan, after a reversed minority is turned over; missing normals are estimated
   Given,    ///< the normals of the scan, unchanged
   Estimate  ///< all normals are estimated
+};
+
+/// The use of the sharp edges of triangles.
+enum class SharpEdgeUse {
+  Auto,  ///< each smooth patch has a function of its own, and the mesh has the edges
+  Off    ///< one smooth level set, which rounds the edges
 };
 
 enum class WindingCheck {
@@ -53,6 +60,8 @@ struct FitOptions {
   double epsilon = LmePrior().epsilon;
   std::optional<SsdSolver> solver = {};  ///< empty: Multilevel, or Full if the weights or the prior require it
   Closing close = SsdParams().closing;
+  SharpEdgeUse edges = SharpEdgeUse::Auto;
+  double feature_angle = SharpEdgeParams().sure_turn;
   double tolerance = SsdParams().tolerance;
   double band_tolerance = SsdParams().band_tolerance;
   std::int64_t max_iterations = SsdParams().max_iterations;

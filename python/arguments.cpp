@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "mesh/expression/expression.h"
+#include "body/piecewise_body.h"
 #include "python/interruptible.h"
 
 namespace umtet::python {
@@ -86,7 +86,7 @@ Psi psi_of(const py::object& psi, const std::optional<Box>& box, std::optional<d
   domain.box = *box;
   domain.diagonal = box->diagonal().norm();
   if (py::isinstance<py::str>(psi)) {
-    domain.formula = shared_function(Expression(psi.cast<std::string>(), t));
+    set_formula(domain, psi.cast<std::string>(), t);
     return out;
   }
   if (PyCallable_Check(psi.ptr()) == 0) throw py::type_error("psi must be a LevelSet, a formula or a callable");

@@ -7,6 +7,7 @@
 #include "body/fidelity/closed_holes.h"
 #include "body/given_triangles.h"
 #include "body/option_names.h"
+#include "body/piecewise_body.h"
 #include "body/scan/fitted_domain.h"
 #include "body/scan/given_cloud.h"
 #include "body/scan/level_set_fit.h"
@@ -58,12 +59,13 @@ std::vector<char> faces_at_walls(const Mesh& mesh, const std::vector<Triangle>& 
 }
 
 /// Divides the boundary of the mesh.
-/// @param mesh  in the coordinates of the domain
-void set_patches(const Domain& domain, const Options& options, Mesh& mesh) {
+/// @param of_body  patch of each boundary face in a body with sharp edges; empty for a smooth body
+/// @param mesh     in the coordinates of the domain
+void set_patches(const Domain& domain, const Options& options, const std::vector<int>& of_body, Mesh& mesh) {
   std::vector<Triangle> faces = mesh.boundary;
   faces.insert(faces.end(), mesh.walls.begin(), mesh.walls.end());
   BoundaryDivision division =
-      divide_boundary(mesh.points, faces, faces_at_walls(mesh, faces), domain.cloud, options.patches);
+      divide_boundary(mesh.points, faces, faces_at_walls(mesh, faces), domain.cloud, options.patches, of_body);
   const std::optional<SupportReport>& support = mesh.measures.domain.support;
   if (support && support->n_closed_holes > 0) {
     const ClosedHoles holes = find_closed_holes(domain, mesh.points, mesh.boundary, options.context);
@@ -89,8 +91,9 @@ Mesh mesh_of(Domain domain, const Options& options) {
             .measures = std::move(best.measured),
             .verdict = {},
             .notices = std::move(domain.notices)};
+  if (best.features) mesh.curves = best.features->chains;
   mesh.labels = labels_of(domain.cloud, mesh.points, mesh.boundary);
-  set_patches(domain, options, mesh);
+  set_patches(domain, options, best.features ? best.features->face_patch : std::vector<int>(), mesh);
   for (Vec3& x : mesh.points) x += domain.shift;
   if (best.second) {
     mesh.curved = std::move(best.second->mesh);
@@ -143,6 +146,15 @@ CloudFile sampled_cloud(OrientedPointCloud samples, const TriangleReport& report
   return file;
 }
 
+/// The domain of a function, without the function. \throw std::invalid_argument  there is no box
+Domain domain_in_box(const Options& options) {
+  if (!options.box) throw std::invalid_argument("box: missing; a function needs a box around the region where psi < 0");
+  Domain domain;
+  domain.box = *options.box;
+  domain.diagonal = options.box->diagonal().norm();
+  return domain;
+}
+
 /// \throw std::invalid_argument  a mesh that is no mesh of triangles
 void require_triangles(const TriangleMesh& mesh) {
   const auto n = static_cast<int>(mesh.V.size());
@@ -189,12 +201,15 @@ Mesh mesh_body(TriangleMesh triangles, const Options& options) {
   return mesh_body(fit_body(std::move(triangles), options), options);
 }
 
+Mesh mesh_body(const PiecewiseDomain& body, const Options& options) {
+  Domain domain = domain_in_box(options);
+  set_body(domain, std::make_shared<const PiecewiseBody>(PiecewiseBody{body}));
+  return mesh_of(std::move(domain), options);
+}
+
 Mesh mesh_body(const SharedFunction& psi, const Options& options) {
-  if (!options.box) throw std::invalid_argument("box: missing; a function needs a box around the region where psi < 0");
-  Domain domain;
+  Domain domain = domain_in_box(options);
   domain.formula = psi;
-  domain.box = *options.box;
-  domain.diagonal = options.box->diagonal().norm();
   return mesh_of(std::move(domain), options);
 }
 

@@ -16,6 +16,7 @@
 #include "body/shared_function.h"
 #include "common/context.h"
 #include "common/message.h"
+#include "mesh/core/piecewise_domain.h"
 #include "mesh/core/tet_mesh.h"
 #include "mesh/second_order/quadratic_tets.h"
 #include "reconstruct/cloud/cloud_file.h"
@@ -59,6 +60,9 @@ struct Mesh {
   std::vector<MeshPart> patches = {};
   /// For each face of `boundary`, then for each face of `walls`: its index in `patches`.
   std::vector<int> face_patch = {};
+  /// For a piecewise smooth body: the vertices of each sharp edge in order (of a closed one with the first at the end
+  /// again; empty: the mesh lacks it).
+  std::vector<std::vector<int>> curves = {};
   std::optional<QuadraticTetMesh> curved = {};  ///< the mesh with mid-sides, with MeshOptions::order = 2
   /// Edge length of the background; the least edge length if it is graded.
   double h = 0;
@@ -107,6 +111,10 @@ Mesh mesh_body(TriangleMesh triangles, const Options& options = {});
 
 /// Meshes {psi < 0} of a function with a Hessian. \throw as mesh_body(); std::invalid_argument  there is no options.box
 Mesh mesh_body(const SharedFunction& psi, const Options& options);
+
+/// Meshes a body whose boundary is piecewise smooth: its sharp edges are chains of edges, its corners vertices
+/// (domain_of_formula() in mesh/features/formula_domain.h). \throw as the former
+Mesh mesh_body(const PiecewiseDomain& body, const Options& options);
 
 /// Meshes {psi < 0} of any implicit function, for instance a LevelSet, which is moved or copied.
 template <ImplicitFunction F>

@@ -6,13 +6,17 @@
 #include <utility>
 
 #include "body/fidelity/closed_holes.h"
+#include "body/fidelity/feature_report.h"
 #include "body/fidelity/mesh_defects.h"
 #include "body/fidelity/mesh_sizes.h"
 #include "body/fidelity/missed_samples.h"
+#include "body/fidelity/patch_measures.h"
 #include "body/fidelity/triangle_distances.h"
 #include "body/label_volume.h"
 #include "body/pieces/component_proof.h"
+#include "body/piecewise_body.h"
 #include "body/sizing/edge_length.h"
+#include "body/sizing/sheets.h"
 #include "common/formatted.h"
 #include "common/polled_loops.h"
 #include "mesh/certify/boundary_surface.h"
@@ -54,7 +58,7 @@ VertexThickness vertex_thickness(const Domain& domain, const TetMesh& mesh, cons
   for (const int i : boundary) made.vertices.push_back(mesh.V[i]);
   if (made.vertices.empty()) return made;
   const std::vector<double> h_at = h.at(made.vertices);
-  made.thickness = thickness(domain.psi(), made.vertices, h_at, .25, kFarthestSheet, context, domain.steepest());
+  made.thickness = body_thickness(domain, made.vertices, h_at, .25, kFarthestSheet, context);
   made.least_over_h = kFarthestSheet;
   for (std::size_t i = 0; i < made.vertices.size(); ++i) {
     made.least_over_h = std::min(made.least_over_h, made.thickness[i] / h_at[i]);
@@ -74,8 +78,7 @@ PointThickness with_lost_parts(const VertexThickness& vertices, const std::vecto
                                const Domain& domain, const MeshEdge& h, const Context& context) {
   PointThickness all;
   for (const Difference& d : lost) all.points.push_back(d.where);
-  all.thickness =
-      thickness(domain.psi(), all.points, h.at(all.points), .25, kFarthestSheet, context, domain.steepest());
+  all.thickness = body_thickness(domain, all.points, h.at(all.points), .25, kFarthestSheet, context);
   all.points.insert(all.points.end(), vertices.vertices.begin(), vertices.vertices.end());
   all.thickness.insert(all.thickness.end(), vertices.thickness.begin(), vertices.thickness.end());
   return all;
@@ -276,6 +279,14 @@ std::optional<std::string> deviation_reason(double asked, const MeshCertificate&
   return formatted("a face centre is %.4g from psi = 0, more than the largest allowed deviation of %.4g", made, asked);
 }
 
+/// certify() with the patches of the mesh.
+MeshCertificate certify_patches(const PiecewiseBody& body, CertificateInput input, const PiecewiseMesh& features) {
+  input.psi.reset();
+  MeshCertificate certificate = certify(input);
+  measure_against_patches(body.domain, input.mesh->V, features.faces, features.face_patch, input.context, certificate);
+  return certificate;
+}
+
 /// Those that the certificate of the tets has.
 void set_reasons(MeshMeasures& m) {
   m.reasons = invalidities(m.mesh);
@@ -284,6 +295,18 @@ void set_reasons(MeshMeasures& m) {
 }
 
 }  // namespace
+
+MeshCertificate certify_against(const Domain& domain, CertificateInput input) {
+  input.psi.reset();
+  if (!domain.piecewise) input.psi = domain.psi();
+  MeshCertificate certificate = certify(input);
+  if (!domain.piecewise) return certificate;
+  const PiecewiseDomain& body = domain.piecewise->domain;
+  const std::vector<Triangle> faces = boundary_faces(input.mesh->C, input.mesh->V.size()).triangles;
+  const std::vector<int> patch = patches_by_position(domain, input.mesh->V, faces, certificate.h, input.context);
+  measure_against_patches(body, input.mesh->V, faces, patch, input.context, certificate);
+  return certificate;
+}
 
 MeshEdge mesh_edge(const BackgroundMesh& background, const UmResult& result, double h) {
   const std::vector<int>& I = result.submesh.positive_vertices;
@@ -315,14 +338,15 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
     input.wall_faces = &result.walls;
     input.background_V = &result.submesh.mesh.V;
   }
-  input.psi = domain.psi();
   input.coordinate_rounding = coordinate_rounding(domain);
   input.context = context;
   Measurement made;
   MeshMeasures& m = made.measures;
   if (domain.level_set) m.n_points = domain.cloud.points.size();
   m.input = domain.facts;
-  m.mesh = params.certificate ? *params.certificate : certify(input);
+  m.mesh = params.certificate ? *params.certificate
+           : params.features  ? certify_patches(*domain.piecewise, std::move(input), *params.features)
+                              : certify_against(domain, std::move(input));
   m.coordinate_rounding_over_h = m.mesh.coordinate_rounding / m.mesh.h;
   set_reasons(m);
   if (auto reason = deviation_reason(params.max_deviation, m.mesh)) m.reasons.push_back(std::move(*reason));
@@ -362,6 +386,11 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   leave_out_faults_of_psi(domain, h, context, differences);
   made.defects = defects_of(domain, differences, h, context);
   if (compared.defect && !has_topology_of(m.triangles)) made.defects.push_back(*compared.defect);
+  if (params.features) {
+    m.features = feature_report(domain.piecewise->domain, *params.features, h.nominal());
+    const std::vector<MeshDefect> missed = missed_features(domain, *params.features, *surface, h, context);
+    made.defects.insert(made.defects.end(), missed.begin(), missed.end());
+  }
   m.defects = report_on(made.defects);
   m.resolution.kappa_h_max = max_curvature(domain.psi(), mesh, boundary_vertices, h, context);
   m.resolution.feature_size_over_h_min = thickness.least_over_h;

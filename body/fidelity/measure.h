@@ -7,6 +7,7 @@
 #include "body/fidelity/mesh_measures.h"
 #include "body/pieces/zero_set_choice.h"
 #include "body/sizing/too_thin.h"
+#include "mesh/features/piecewise_mesh.h"
 #include "mesh/sizes/size_field.h"
 #include "mesh/universal_mesh.h"
 
@@ -26,7 +27,12 @@ struct MeasureParams {
   const SizeField* sizes = nullptr;  ///< the sizes for which a graded mesh was made
   /// Certificate of the whole mesh, if the result contains only its boundary; null: it is made from the result.
   const MeshCertificate* certificate = nullptr;
+  /// The curves and patches of a mesh of Domain::piecewise, whose tets are those of the result; null for a smooth body.
+  const PiecewiseMesh* features = nullptr;
 };
+
+/// certify() against psi of the domain. Faces of a piecewise smooth body are measured against their patches.
+MeshCertificate certify_against(const Domain& domain, CertificateInput input);
 
 /// Returns the edge length of a mesh. If the background is not a lattice, it varies: there is one value for each vertex
 /// of the boundary.

@@ -7,7 +7,7 @@
 namespace umtet {
 namespace {
 
-constexpr std::array<const char*, 7> kWords = {"folded", "off", "filled", "cut", "thin", "topology", "missed"};
+constexpr std::array<const char*, 8> kWords = {"folded", "off", "filled", "cut", "thin", "topology", "missed", "edges"};
 
 bool is_worse(const MeshDefect& a, const MeshDefect& b) {
   return std::tuple(is_small(b), a.off_over_h) > std::tuple(is_small(a), b.off_over_h);

@@ -19,9 +19,11 @@ enum class DefectKind {
   Thin,      ///< the mesh lacks a body or a gap that is thinner than an edge
   Topology,  ///< the mesh lacks pieces or handles of psi = 0
   Missed,    ///< the mesh misses samples that psi = 0 passes
+  Edges,     ///< the mesh lacks a sharp edge or a corner of the body
 };
 
-/// The word that documents and flags use: "folded", "off", "filled", "cut", "thin", "topology", "missed".
+/// The word that documents and flags use: "folded", "off", "filled", "cut", "thin", "topology", "missed",
+/// "edges".
 const char* to_string(DefectKind kind);
 /// Returns nothing if the word is not a kind.
 std::optional<DefectKind> defect_kind_of(const std::string& word);

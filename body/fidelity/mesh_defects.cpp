@@ -8,11 +8,11 @@
 #include "body/fidelity/lost_ends.h"
 #include "body/fidelity/lost_surface.h"
 #include "body/pieces/clusters.h"
+#include "body/sizing/sheets.h"
 #include "common/polled_loops.h"
 #include "mesh/core/asking_psi.h"
 #include "mesh/implicit/curvature.h"
 #include "mesh/implicit/foot_point.h"
-#include "mesh/implicit/thickness.h"
 #include "reconstruct/cloud/neighbours/neighbour_tree.h"
 
 namespace umtet {
@@ -28,7 +28,7 @@ const double kFlat = kLeastEdgesAcross / 2 - std::sqrt(kLeastEdgesAcross * kLeas
 std::vector<double> features(const Domain& domain, const std::vector<Vec3>& points, const std::vector<double>& h,
                              const Context& context) {
   const ImplicitFunctionRef psi = domain.body();
-  std::vector<double> f = thickness(psi, points, h, kStep, kReach, context, domain.steepest());
+  std::vector<double> f = body_thickness(domain, points, h, kStep, kReach, context);
   for_each_asking(psi, points.size(), kValuesPerPoll / 8, context, [&](std::size_t i) {
     // A vertex that has stopped short of psi = 0 is not where its curvature counts.
     const Foot foot = foot_point(psi, points[i], h[i]);
@@ -105,7 +105,7 @@ MeshDefect topology_defect(const Domain& domain, const ZeroSetChoice& counted, c
   defect.n = n;
   if (points.empty()) return defect;
   const std::vector<double> h_at = h.at(points);
-  const std::vector<double> t = thickness(domain.body(), points, h_at, kStep, kReach, context, domain.steepest());
+  const std::vector<double> t = body_thickness(domain, points, h_at, kStep, kReach, context);
   const std::vector<double> d = boundary.distances(points, context);
   const auto is_thin = [&](std::size_t i) { return t[i] < kLeastEdgesAcross * h_at[i]; };
   std::size_t at = 0;
@@ -130,7 +130,7 @@ std::vector<MeshDefect> defects_of(const Domain& domain, const std::vector<Diffe
   const std::vector<double> feature = features(domain, points, h_at, context);
   std::vector<MeshDefect> defects;
   for (const DefectKind kind : {DefectKind::Folded, DefectKind::Off, DefectKind::Filled, DefectKind::Cut,
-                                DefectKind::Thin, DefectKind::Topology, DefectKind::Missed}) {
+                                DefectKind::Thin, DefectKind::Topology, DefectKind::Missed, DefectKind::Edges}) {
     std::vector<std::size_t> of_kind;
     std::vector<Vec3> x;
     for (std::size_t i = 0; i < differences.size(); ++i) {

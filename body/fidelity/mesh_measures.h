@@ -95,6 +95,26 @@ struct TriangleDistances {
   std::optional<SharpEdgeReport> edges = {};  ///< empty if the triangles have no sharp edges
 };
 
+/// The sharp edges and corners of a piecewise smooth body, and those of its mesh.
+struct FeatureReport {
+  std::size_t n_patches = 0;                              ///< that have faces in the boundary of the mesh
+  std::size_t n_corners = 0, n_curves = 0;                ///< of the body
+  std::size_t n_missed_corners = 0, n_missed_curves = 0;  ///< that the mesh does not have
+  double length = 0, missed_length = 0;                   ///< of all curves, and of those that the mesh does not have
+  double max_vertex_over_h = 0;  ///< largest distance from a vertex on a curve or a corner to it, in h
+  double max_curve_over_h = 0;   ///< largest distance from a curve to the edges on it, in h
+  /// Greatest difference of the dihedral angle at an edge on a curve between the mesh and the body, degrees.
+  double max_angle_off_deg = 0;
+  double min_angle_deg = 180;  ///< least dihedral angle of the body at a curve
+  /// The least over all curves of the greatest mean ratio that tets at it can have (best_wedge_quality()); 1 without
+  /// curves.
+  double wedge_quality = 1;
+  double min_cos_normal = 1;              ///< cos(face normal, gradient of the patch of the face)
+  std::size_t n_faces_without_patch = 0;  ///< next to curves that the mesh does not have
+
+  bool has_all() const { return n_missed_corners + n_missed_curves + n_faces_without_patch == 0; }
+};
+
 /// Comparison of the features of psi with the edge length.
 struct ResolutionReport {
   double kappa_h_max = 0;              ///< largest principal curvature of psi = 0 at the boundary vertices, times h
@@ -135,6 +155,7 @@ struct MeshMeasures {
   std::optional<SampleDistances> cloud;        ///< empty for a formula
   std::optional<TriangleDistances> triangles;  ///< empty if the input has no triangles
   std::optional<LabelVolumeReport> labels;     ///< empty if the input has no voxels
+  std::optional<FeatureReport> features;       ///< empty for a smooth body
   ResolutionReport resolution;
   std::optional<SizesReport> sizes;   ///< empty if the mesh has one h
   std::optional<std::int64_t> order;  ///< 1 or 2; empty if only the mesh of the corners was measured

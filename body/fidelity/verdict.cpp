@@ -44,6 +44,9 @@ std::string said_of(const DefectReport::OfKind& k, const ZeroSetReport& domain, 
           "psi = 0 passes by samples that are farther than h from the mesh at %s, the worst, %zu samples at %s, %.2g "
           "h",
           defects.c_str(), worst.n, at.c_str(), off);
+    case DefectKind::Edges:
+      return formatted("the mesh lacks sharp edges or corners of the body at %s, the worst at %s, up to %.2g h long",
+                       defects.c_str(), at.c_str(), worst.size_over_h);
   }
   return "";
 }
@@ -59,7 +62,7 @@ bool fits_psi(const MeshMeasures& m) {
   return m.is_valid && m.reasons.empty() && std::all_of(m.defects.kinds.begin(), m.defects.kinds.end(), is_settled);
 }
 
-bool has_input(const MeshMeasures& m) { return m.n_points || m.labels; }
+bool has_input(const MeshMeasures& m) { return m.n_points || m.labels || m.triangles; }
 
 std::string Verdict::word() const {
   if (!passes()) return "fail";

@@ -8,6 +8,7 @@
 
 #include "body/errors.h"
 #include "common/formatted.h"
+#include "mesh/patches/patch_curves.h"
 #include "mesh/patches/patches.h"
 #include "mesh/patches/planar_pieces.h"
 #include "reconstruct/cloud/transfer/label_votes.h"
@@ -40,6 +41,7 @@ class Division {
   /// Returns no patches if nothing is flat except walls.
   BoundaryDivision by_planes(double angle) const;
   BoundaryDivision by_angle(double angle) const;
+  BoundaryDivision by_body(const std::vector<int>& of_body) const;
   BoundaryDivision whole() const { return {std::vector<int>(F_.size(), 0), {{kWholeBoundary, kFirstPatch}}, {}}; }
 
  private:
@@ -149,6 +151,23 @@ BoundaryDivision Division::by_angle(double angle) const {
   return {std::move(pieces), std::move(patches), {}};
 }
 
+BoundaryDivision Division::by_body(const std::vector<int>& of_body) const {
+  const std::vector<int> all = distinct(of_body);
+  BoundaryDivision division = whole();
+  if (all.size() < 2) return division;
+  division.patches.clear();
+  for (const int p : all) {
+    const int number = static_cast<int>(division.patches.size()) + kFirstPatch;
+    division.patches.push_back({p < 0 ? "rest" : formatted("patch_%d", p + 1), number});
+  }
+  for (std::size_t f = 0; f < of_body.size(); ++f) {
+    const auto at = std::lower_bound(all.begin(), all.end(), of_body[f]);
+    division.face_patch[f] = static_cast<int>(at - all.begin());
+  }
+  division.curves = curves_between(F_, division.face_patch);
+  return division;
+}
+
 /// Returns the least number that no patch has.
 int body_number(const std::vector<MeshPart>& patches) {
   for (int number = 1;; ++number) {
@@ -177,14 +196,17 @@ void require_patches(const OrientedPointCloud& cloud, const PatchOptions& option
 
 BoundaryDivision divide_boundary(const std::vector<Vec3>& V, const std::vector<Triangle>& F,
                                  const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
-                                 const PatchOptions& options) {
+                                 const PatchOptions& options, const std::vector<int>& of_body) {
   require_patches(cloud, options);
   const Division division(V, F, at_wall);
   if (!cloud.labels.empty()) return division.by_labels(cloud, options);
-  if (!(options.planar > 0) || F.empty()) return division.by_angle(options.angle);
+  const auto without_planes = [&] {
+    return options.angle > 0 || of_body.empty() ? division.by_angle(options.angle) : division.by_body(of_body);
+  };
+  if (!(options.planar > 0) || F.empty()) return without_planes();
   BoundaryDivision planes = division.by_planes(options.planar);
   if (!planes.patches.empty()) return planes;
-  BoundaryDivision rest = division.by_angle(options.angle);
+  BoundaryDivision rest = without_planes();
   rest.notices.push_back("no part of the boundary is flat within " + shortest(options.planar) + " degrees");
   return rest;
 }

@@ -12,7 +12,7 @@
 namespace umtet {
 
 /// How a boundary is divided: by the labels of the samples if they have any; otherwise by `planar` or else by `angle`
-/// if set; otherwise into connected components.
+/// if set; otherwise into the patches of a body with sharp edges; otherwise into connected components.
 struct PatchOptions {
   double angle = 0;   ///< degrees in [0, 180]: patches end where faces meet at more; 0: where the surface ends
   double planar = 0;  ///< degrees in [0, 90): patches are the parts that are flat within this, and the rest; 0: off
@@ -29,17 +29,21 @@ struct BoundaryDivision {
   /// patches without labels those from 2 on, because the body has the number 1 then.
   std::vector<MeshPart> patches;
   std::vector<std::string> notices;  ///< what differs from the request: labels without faces, and nothing flat
+  /// The edges between the patches of a body with sharp edges, if it is divided into them.
+  std::vector<MeshCurve> curves = {};
 };
 
 /// Divides the boundary faces F of a mesh with vertices V. A patch without a name is patch_LABEL, region_N, plane_N
-/// (and rest) or boundary_N, or "boundary" if it is the only one. Faces at walls are separate patches: "walls", or
-/// walls_1, walls_2 ... by angle or plane.
+/// (and rest) or boundary_N, or "boundary" if it is the only one. Patch k of a body with sharp edges is patch_k, from
+/// 1, and faces without such a patch are rest. Faces at walls are separate patches: "walls", or walls_1, walls_2 ... by
+/// angle or plane.
 /// @param at_wall  flags of faces at the walls of a box; empty: none
 /// @param cloud    samples, in the coordinates of V; their labels count
+/// @param of_body  patch of each face in a body with sharp edges, from 0; -1: none. Empty: a smooth body
 /// \throw the exceptions of require_patches()
 BoundaryDivision divide_boundary(const std::vector<Vec3>& V, const std::vector<Triangle>& F,
                                  const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
-                                 const PatchOptions& options);
+                                 const PatchOptions& options, const std::vector<int>& of_body = {});
 
 /// Checks the options, before there is a mesh.
 /// \throw std::invalid_argument  an angle out of range

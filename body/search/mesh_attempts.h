@@ -11,6 +11,7 @@
 #include "body/sizing/edge_length.h"
 #include "body/sizing/too_thin.h"
 #include "mesh/background/background_mesh.h"
+#include "mesh/features/piecewise_mesh.h"
 #include "mesh/second_order/quadratic_tets.h"
 #include "mesh/sizes/size_field.h"
 #include "mesh/universal_mesh.h"
@@ -33,6 +34,9 @@ struct MeshAttempt {
   /// The mesh of several processes, if they made it; `result` then contains only its boundary.
   std::shared_ptr<const MeshInParts> parts = nullptr;
   std::vector<Vec3> mid_sides = {};  ///< mid-sides of the boundary edges of `parts`, if mesh.order = 2
+  /// The curves and patches of the mesh of Domain::piecewise, by the numbers of vertices in `result`; it has vertices
+  /// and faces, and no tets. Null for a smooth body.
+  std::shared_ptr<const PiecewiseMesh> features = nullptr;
 
   bool made() const { return result.status == UmStatus::Success; }
   bool is_right() const { return made() && reasons.empty(); }

@@ -12,6 +12,7 @@
 #include "body/fidelity/verdict.h"
 #include "body/fidelity/volume_match.h"
 #include "body/pieces/component_proof.h"
+#include "body/search/piecewise_fit.h"
 #include "body/search/rounded_mesh.h"
 #include "body/search/second_order.h"
 #include "body/sizing/edge_length.h"
@@ -54,7 +55,9 @@ MeshMaker::MeshMaker(Domain& domain, BodyOptions options, Context context, MeshL
       context_(std::move(context)),
       lines_(std::move(lines)),
       params_(um_params(options_.mesh)),
-      ranks_(ranks) {}
+      ranks_(ranks) {
+  if (domain_.piecewise) require_piecewise(options_);
+}
 
 const ZeroSetChoice& MeshMaker::pieces_at(double h, const SizeField* sizes) {
   domain_.limit_detail(h);
@@ -91,6 +94,7 @@ UmParams MeshMaker::params_for(const ZeroSetChoice& pieces, double h) const {
     const double aim = quality_within_reach(thickness, h);
     if (aim < params.fast.quality_target()) params.fast.set_quality_target(aim);
   }
+  if (domain_.piecewise) params.fast.classification = piecewise_params(options_.mesh).classification;
   // The full loop would mesh every piece; crawling starts from the ones to keep.
   if (!pieces.dropped.empty()) params.submesh.search = SubmeshSearch::Crawl;
   return params;
@@ -109,7 +113,8 @@ KnownSigns MeshMaker::known_signs(const BackgroundMesh& background, const ZeroSe
 /// None where the body is as thick as the tets need it, or may not be thickened.
 const TriangleThickness* MeshMaker::thin_triangles(const BackgroundMesh& background, const ZeroSetChoice& pieces,
                                                    double h) {
-  if (!may_be_thickened(domain_, options_) || ranks_ || !background.is_lattice() || !pieces.dropped.empty())
+  if (!may_be_thickened(domain_, options_) || ranks_ || !background.is_lattice() ||
+      !pieces.dropped.empty())
     return nullptr;
   if (!thickness_ || thickness_->first < h) thickness_ = {h, triangle_thickness(domain_, kEdgesAcross * h, context_)};
   return thickness_->second.share(0) < kEdgesAcross * h ? &thickness_->second : nullptr;
@@ -139,7 +144,7 @@ MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
 
 /// Of the same psi, and the same pieces of it.
 bool MeshMaker::may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces) const {
-  return params_.mode == UmMode::Fast && former.made() && former.background && former.n_levels == n_levels_ &&
+  return params_.mode == UmMode::Fast && !domain_.piecewise && former.made() && former.background && former.n_levels == n_levels_ &&
          former.n_pieces == pieces.seeds.size() && former.n_dropped == pieces.dropped.size();
 }
 
@@ -170,8 +175,11 @@ ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetC
 /// None where one process has to.
 std::optional<MadeInParts> MeshMaker::made_by_ranks(const SizedBackground& background, const ZeroSetChoice& pieces,
                                                     double h) {
-  if (!background.mesh.is_lattice()) {
-    if (ranks_->n() > 1 && !has_said_alone_) say("one process makes this mesh: its background is no lattice");
+  if (!background.mesh.is_lattice() || domain_.piecewise) {
+    if (ranks_->n() > 1 && !has_said_alone_) {
+      say(domain_.piecewise ? "one process makes this mesh: its body has sharp edges"
+                            : "one process makes this mesh: its background is no lattice");
+    }
     has_said_alone_ = true;
     return std::nullopt;
   }
@@ -191,7 +199,23 @@ MeshMaker::Begun MeshMaker::choose(const SizedBackground& background, double h, 
   return begun;
 }
 
+void MeshMaker::fit_edges(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {
+  PiecewiseFit made = fit_piecewise(*domain_.piecewise, background.mesh, std::move(chosen), options_.mesh,
+                                    context_.part(kFit, kCertificate));
+  a.result = std::move(made.result);
+  round_to_file(a.result, domain_.shift);
+  if (!a.made()) return;
+  made.features->mesh.V = a.result.final;
+  a.features = std::move(made.features);
+  if (!lines_.detail) return;
+  const PiecewiseMesh& f = *a.features;
+  lines_.detail(formatted("edges: %zu curves, %zu corners, %zu defects; flips: %zu edges removed, %zu collapsed",
+                          f.graph.curves.size(), f.graph.corners.size(), f.defects.size(), f.flips.n_removed_edges,
+                          f.flips.n_collapsed));
+}
+
 void MeshMaker::fit(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {
+  if (domain_.piecewise) return fit_edges(background, std::move(chosen), a);
   const ZeroSetChoice& pieces = pieces_at(a.h, a.sizes.get());
   a.result = fit_submesh(background.mesh, domain_.psi(), params_for(pieces, a.h), std::move(chosen),
                          context_.part(kFit, kCertificate));
@@ -234,8 +258,9 @@ MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {
   const MeshEdge h = mesh_edge(background.mesh, a.result, a.h);
   TetMesh mesh{std::move(a.result.final), std::move(a.result.submesh.mesh.C)};  // lent: there is no copy of all tets
   const MeshCertificate* of_parts = begun.made ? &begun.made->certificate : nullptr;
-  Measurement made = measure(domain_, mesh, a.result, pieces, h,
-                             {&a.thin, options_.mesh.max_deviation, a.sizes.get(), of_parts}, context_);
+  Measurement made =
+      measure(domain_, mesh, a.result, pieces, h,
+              {&a.thin, options_.mesh.max_deviation, a.sizes.get(), of_parts, a.features.get()}, context_);
   a.result.final = std::move(mesh.V);
   a.result.submesh.mesh.C = std::move(mesh.C);
   a.measured = std::move(made.measures);
@@ -316,7 +341,7 @@ MeshAttempt MeshMaker::search(BackgroundChoice& backgrounds, const EdgeLength& c
   MeshAttempt of_one_h = best_attempt(
       choice, effort, [&](double h) { return attempt_for_tets(h, make); },
       [this](const std::string& line) { say(line); });
-  const bool may_be_remade = n_attempts_ == 1 || effort > kDefaultEffort;
+  const bool may_be_remade = !domain_.piecewise && (n_attempts_ == 1 || effort > kDefaultEffort);
   if (of_one_h.is_right() || !may_be_remade || !may_improve(of_one_h, effort)) return of_one_h;
   const double allowed = (effort - n_attempts_) * backgrounds.expected_tets(domain_, choice.h);
   try {

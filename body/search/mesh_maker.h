@@ -74,6 +74,7 @@ class MeshMaker {
   std::optional<MadeInParts> made_by_ranks(const SizedBackground& background, const ZeroSetChoice& pieces, double h);
   MeshAttempt finish(const SizedBackground& background, Begun begun);
   void fit(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
+  void fit_edges(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a);
   void flip(MeshAttempt& a) const;
   UmParams params_for(const ZeroSetChoice& pieces, double h) const;
   const TriangleThickness* thin_triangles(const BackgroundMesh& background, const ZeroSetChoice& pieces, double h);

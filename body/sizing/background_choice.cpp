@@ -19,6 +19,12 @@
 #include "reconstruct/solve/resolution.h"
 
 namespace umtet {
+namespace {
+
+// Graded tets are of lower quality, so they have to be fewer by this factor.
+constexpr double kWorthIt = 2;
+
+}  // namespace
 
 const Tiling& tiling_of(const MeshOptions& options) {
   return options.background == "auto" ? a15() : tiling_named(options.background);
@@ -72,14 +78,13 @@ BackgroundChoice::BackgroundChoice(BodyOptions options, const Domain& domain)
 
 bool BackgroundChoice::may_be_graded(const Domain& domain) const {
   const MeshOptions& p = options_.mesh;
+  if (domain.has_edges_of_triangles()) return is_ours_ && !walls_ && p.h == 0;
   return is_ours_ && (domain.level_set || domain.labels) && p.mode == UmMode::Fast && !walls_ && p.h == 0 &&
          p.max_deviation == 0;
 }
 
 /// @param one  the choice of one h
 void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, const Context& context) {
-  // Graded tets are of lower quality, so they have to be fewer by this factor.
-  constexpr double kWorthIt = 2;
   const double least = std::cbrt(1 / kWorthIt) * kMeshEdge * domain.diagonal;  // sizes are no larger than h by default
   // To find sizes takes as long as a small mesh. Graded faces are smaller than in proportion, by a quarter and more.
   constexpr double kFewFaces = 1. / 3;
@@ -96,8 +101,29 @@ void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, 
   uniform_tets_ = uniform;
 }
 
+/// The least size on the features of a body of triangles with sharp edges, as one h or, if that takes more than twice the
+/// tets, the least of varying sizes.
+EdgeLength BackgroundChoice::edge_length_by_edges(Domain& domain, const Context& context) {
+  GradedSizes sizes(options_, domain.shift);
+  sizes.add(domain, context);
+  const double h = sizes.finest();
+  Known graded{h, std::make_shared<const SizeField>(sizes.field(h, context)), {}};
+  graded.n_tets = expected_graded_tets(*graded.sizes, h, domain.psi(), domain.box, domain.steepest(), context);
+  const double one = least_edged_size(domain, options_.mesh, context);
+  const double uniform = umtet::expected_tets(*tiling_, domain.size(), one, source_);
+  is_decided_ = true;
+  if (uniform <= kWorthIt * *graded.n_tets && uniform <= static_cast<double>(options_.mesh.max_tets))
+    return options_.mesh.tets > 0 ? choose_edge_length(domain, options_, context) : representable({one, one}, domain);
+  graded_.emplace(std::move(sizes));
+  known_ = std::move(graded);
+  uniform_tets_ = uniform;
+  return graded_edge_length(domain, context);
+}
+
 EdgeLength BackgroundChoice::edge_length(Domain& domain, const Context& context) {
   if (given_) return {given_->h(), given_->h()};
+  if (!graded_ && !is_decided_ && domain.has_edges_of_triangles() && may_be_graded(domain))
+    return edge_length_by_edges(domain, context);
   if (!graded_) {
     const EdgeLength uniform = choose_edge_length(domain, options_, context);
     if (!is_decided_ && may_be_graded(domain)) grade_if_worth_it(domain, uniform, context);

@@ -28,7 +28,10 @@ class GradedSizes {
   /// \throw any exception of options.sizes
   GradedSizes(BodyOptions options, const Vec3& shift);
 
-  /// Adds the sizes that psi = 0 of this domain requires: mesh.h (by default a tenth of the diagonal if
+  /// For a body of triangles with sharp edges, adds its feature_sizes(), with at most mesh.h, by default .04 of the
+  /// diagonal. Curved patches have at most mesh.max_deviation, by default 5e-4 of the diagonal.
+  ///
+  /// For others, adds the sizes that psi = 0 of this domain requires: mesh.h (by default a tenth of the diagonal if
   /// mesh.max_deviation is given, else .015 of the diagonal), reduced according to thickness, the turn of the normal,
   /// mesh.max_deviation and BodyOptions::label_sizes; with mesh.grade_inside only mesh.h. Sizes are at least
   /// mesh.h_min; by default at least h / 16 and noise / .3. psi has the detail for h_min, also on return.
@@ -53,6 +56,7 @@ class GradedSizes {
 
  private:
   void require_lengths(const std::vector<Vec3>& inside) const;
+  void add_edges(const Domain& domain, const Context& context);
   void find_finest(const Domain& domain, const Context& context);
 
   const BodyOptions options_;
@@ -66,6 +70,10 @@ class GradedSizes {
   double h_min_ = 0, finest_ = 0;
   int n_domains_ = 0;
 };
+
+/// Returns the least size on the features of a body of triangles with sharp edges, for a mesh of one edge length.
+/// \pre domain.has_edges_of_triangles()
+double least_edged_size(const Domain& domain, const MeshOptions& options, const Context& context = {});
 
 /// Returns the approximate factor of h that divides the number of tets by n.
 double h_ratio_of_tets(double n);

@@ -39,7 +39,8 @@ constexpr double kOfSlab = .75;
 }  // namespace
 
 bool may_be_thickened(const Domain& domain, const BodyOptions& options) {
-  return domain.triangles && domain.triangles->body.is_closed && domain.fitted && !domain.complement &&
+  const bool has_psi = domain.fitted || domain.has_edges_of_triangles();
+  return domain.triangles && domain.triangles->body.is_closed && has_psi && !domain.complement &&
          classification_source(options) == ClassificationSource::Chosen;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "body/pieces/clusters.h"
+#include "body/sizing/sheets.h"
 #include "common/formatted.h"
 #include "mesh/implicit/thickness.h"
 
@@ -110,8 +111,8 @@ ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, d
   ThinPlaces result;
   result.h = h;
   Samples samples = samples_of(pieces);
-  const auto distances =
-      sheet_distances(domain.body(), samples.points, kStep * h, kReach * h, context, domain.steepest());
+  const std::vector<double> scale(samples.points.size(), h);
+  const std::vector<SheetDistances> distances = body_sheets(domain, samples.points, scale, kStep, kReach, context);
   samples.thickness.resize(distances.size());
   for (const bool is_gap : {false, true}) {
     std::transform(distances.begin(), distances.end(), samples.thickness.begin(),

@@ -29,6 +29,11 @@ FreeDirections BoundaryStrata::directions(int stratum, const Vec3& x) const {
   FreeDirections free;
   const Stratum& s = strata_[stratum];
   if (s.dimension == 0) return free;
+  if (s.course) {
+    free.n = 1;
+    free.tangents.col(0) = s.course->nearest(x).tangent;
+    return free;
+  }
   Vec3 g;
   value(s.patches.empty() ? -1 : s.patches[0], x, &g);
   const double norm = g.norm();
@@ -60,7 +65,11 @@ bool BoundaryStrata::foot(int stratum, const Vec3& x, double h, Vec3& place) con
   Vec3 y = x;
   const int n = s.dimension == 2 ? 1 : 2;
   bool has_arrived = false;
-  for (int k = 0; k < kMostSteps; ++k) {
+  if (s.course) {
+    y = s.course->nearest(x).point;
+    has_arrived = (y - x).squaredNorm() <= kFarthest * kFarthest * h * h;
+  }
+  for (int k = 0; k < kMostSteps && !s.course; ++k) {
     Vec3 step;
     double off;
     if (n == 1) {
@@ -103,6 +112,21 @@ bool BoundaryStrata::foot(int stratum, const Vec3& x, double h, Vec3& place) con
   }
   place = y;
   return true;
+}
+
+double BoundaryStrata::distance(int stratum, const Vec3& x) const {
+  const Stratum& s = strata_[stratum];
+  if (s.dimension == 0) return (x - s.place).norm();
+  if (s.course) return (x - s.course->nearest(x).point).norm();
+  const auto off = [&](int patch) {
+    Vec3 g;
+    const double f = value(patch, x, &g);
+    return std::abs(f) / g.norm();
+  };
+  if (s.patches.empty()) return off(-1);
+  double farthest = 0;
+  for (const int p : s.patches) farthest = std::max(farthest, off(p));
+  return farthest;
 }
 
 int BoundaryStrata::patch_of(int a, int b, int c) const {

@@ -2,15 +2,18 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "mesh/core/piecewise_domain.h"
+#include "mesh/core/polyline.h"
 #include "mesh/core/tet_mesh.h"
 
 namespace umtet {
 
 /// A piece of the boundary of a piecewise smooth domain: a patch, a curve where two patches meet, or a corner where
-/// three or more do. A vertex on it satisfies one equation for each patch, and has the other directions free.
+/// three or more do. A vertex on it satisfies one equation for each patch, and has the other directions free. The patch
+/// on both sides of a curve may be the same one.
 struct Stratum {
   /// An end of a curve, beyond which a vertex must not slide.
   struct End {
@@ -23,6 +26,8 @@ struct Stratum {
   std::vector<int> patches;   ///< ascending; empty: the surface psi = 0 as a whole, where no patch is known
   Vec3 place = Vec3::Zero();  ///< of a corner
   std::vector<End> ends;      ///< of a curve that is not closed
+  /// Of a curve that is known as a polyline: its vertices are on it, and the patches are not evaluated. Null otherwise.
+  std::shared_ptr<const Polyline> course = nullptr;
 };
 
 /// The free directions of a boundary vertex.
@@ -50,6 +55,8 @@ class BoundaryStrata {
   /// @param place receives the point
   /// @return whether the method converged within 2 h, at a point of the boundary; on a curve, between its ends
   bool foot(int stratum, const Vec3& x, double h, Vec3& place) const;
+  /// Distance of x from the stratum by its equations to first order, or from its place or course, model units.
+  double distance(int stratum, const Vec3& x) const;
   /// The value of a patch (-1: of psi as a whole), oriented so that it is negative inside.
   double value(int patch, const Vec3& x, Vec3* gradient) const;
 

@@ -72,33 +72,42 @@ PiecewiseDomain complement(const PiecewiseDomain& a) {
   return outside;
 }
 
-PiecewiseDomain::Active PiecewiseDomain::psi_of(std::span<const double> values) const {
-  std::array<Active, kOnStack> few;
-  std::vector<Active> many;
+PiecewiseDomain PiecewiseDomain::of_patches(std::vector<PatchFunction> patches, ActivePatchFunction psi) {
+  PiecewiseDomain domain;
+  for (PatchFunction& f : patches) domain.patches_.push_back(std::make_shared<const PatchFunction>(std::move(f)));
+  domain.side_.assign(domain.patches_.size(), 1);
+  domain.active_ = std::move(psi);
+  return domain;
+}
+
+ActivePatch PiecewiseDomain::psi_of(std::span<const double> values) const {
+  std::array<ActivePatch, kOnStack> few;
+  std::vector<ActivePatch> many;
   if (nodes_.size() > kOnStack) many.resize(nodes_.size());
-  Active* at = many.empty() ? few.data() : many.data();
+  ActivePatch* at = many.empty() ? few.data() : many.data();
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     const Node& node = nodes_[k];
     if (node.is_leaf) {
       at[k] = {side_[node.patch] * values[node.patch], node.patch};
       continue;
     }
-    const Active &left = at[node.left], &right = at[node.right];
+    const ActivePatch &left = at[node.left], &right = at[node.right];
     at[k] = (left.value < right.value) == node.is_max ? right : left;
   }
   return at[nodes_.size() - 1];
 }
 
-int PiecewiseDomain::active(const Vec3& x) const {
+ActivePatch PiecewiseDomain::psi_at(const Vec3& x) const {
+  if (active_) return active_(x);
   Values values(patches_.size());
   for (std::size_t p = 0; p < patches_.size(); ++p) values.data()[p] = (*patches_[p])(x, nullptr, nullptr);
-  return psi_of(values.all()).patch;
+  return psi_of(values.all());
 }
 
+int PiecewiseDomain::active(const Vec3& x) const { return psi_at(x).patch; }
+
 double PiecewiseDomain::evaluate(const Vec3& x, Vec3* gradient, Mat3* hessian) const {
-  Values values(patches_.size());
-  for (std::size_t p = 0; p < patches_.size(); ++p) values.data()[p] = (*patches_[p])(x, nullptr, nullptr);
-  const Active psi = psi_of(values.all());
+  const ActivePatch psi = psi_at(x);
   if (gradient || hessian) {
     patch(psi.patch, x, gradient, hessian);
     if (gradient) *gradient *= side_[psi.patch];

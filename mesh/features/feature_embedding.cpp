@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <queue>
@@ -75,7 +76,7 @@ struct BoundaryGraph {
 class Embedder {
  public:
   Embedder(const PiecewiseDomain& domain, const FeatureGraph& graph, const std::vector<Vec3>& V,
-           const std::vector<Tet>& C, const std::vector<Triangle>& faces, double h)
+           const std::vector<Tet>& C, const std::vector<Triangle>& faces, const std::vector<double>& h)
       : domain_(domain),
         graph_(graph),
         V_(V),
@@ -87,10 +88,13 @@ class Embedder {
         places_(V.size()) {}
 
   FeatureEmbedding operator()(const Context& context) {
-    made_.strata = strata_of(domain_, graph_, h_);
     made_.chains.resize(graph_.curves.size());
     made_.chain_arc.resize(graph_.curves.size());
     place_corners();
+    std::vector<double> h_of_corner;
+    for (const int v : made_.corner_vertex)
+      h_of_corner.push_back(v < 0 ? *std::min_element(h_.begin(), h_.end()) : h_[v]);
+    made_.strata = strata_of(domain_, graph_, h_of_corner);
     std::vector<int> order(graph_.curves.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
@@ -114,6 +118,8 @@ class Embedder {
       const FeatureCurve& curve = graph_.curves[c];
       made_.defects.push_back({FeatureDefect::Kind::NoPath, static_cast<int>(c), -1, curve.at(curve.length() / 2)});
     }
+    votes_.resize(faces_.size());
+    for (std::size_t f = 0; f < faces_.size(); ++f) votes_[f] = vote(faces_[f]);
     while (!assign_patches()) {
     }
     set_strata();
@@ -129,7 +135,7 @@ class Embedder {
     for (std::size_t c = 0; c < graph_.corners.size(); ++c)
       for (const int v : boundary_.vertices) {
         const double d = (V_[v] - graph_.corners[c].place).norm();
-        if (d < kCornerReach * h_) pairs.emplace_back(d, static_cast<int>(c), v);
+        if (d < kCornerReach * h_[v]) pairs.emplace_back(d / h_[v], static_cast<int>(c), v);
       }
     std::sort(pairs.begin(), pairs.end());
     made_.corner_vertex.assign(graph_.corners.size(), -1);
@@ -150,17 +156,17 @@ class Embedder {
     for (const Vec3& x : c.points) box.extend(x);
     for (const int v : boundary_.vertices) {
       places_[v] = {kInfinity, 0};
-      if (box.squaredExteriorDistance(V_[v]) > kReach * kReach * h_ * h_) continue;
+      if (box.squaredExteriorDistance(V_[v]) > kReach * kReach * h_[v] * h_[v]) continue;
       places_[v] = c.nearest(V_[v]);
-      if (places_[v].distance > kReach * h_) places_[v].distance = kInfinity;
+      if (places_[v].distance > kReach * h_[v]) places_[v].distance = kInfinity;
     }
   }
 
   double cost(const FeatureCurve& curve, int a, const BoundaryGraph::Arc& arc) const {
-    const double da = places_[a].distance / h_, db = places_[arc.to].distance / h_;
+    const double h = (h_[a] + h_[arc.to]) / 2, da = places_[a].distance / h, db = places_[arc.to].distance / h;
     const double angle = curve.angle_deg_at((places_[a].arc + places_[arc.to].arc) / 2);
     const double lack = std::max(0., kGoodWedge - best_wedge_quality(angle, arc.n_tets));
-    return (da * da + db * db) / 2 + kLengthWeight * (V_[a] - V_[arc.to]).norm() / h_ + kWedgeWeight * lack * lack;
+    return (da * da + db * db) / 2 + kLengthWeight * (V_[a] - V_[arc.to]).norm() / h + kWedgeWeight * lack * lack;
   }
 
   /// The path of least cost over free vertices, or an empty one.
@@ -299,13 +305,14 @@ class Embedder {
   /// The patch at which psi = 0 is met from the centroid of a face.
   int vote(const Triangle& f) const {
     Vec3 x = (V_[f[0]] + V_[f[1]] + V_[f[2]]) / 3;
+    const double h = h_[f[0]];
     for (int k = 0; k < kVoteSteps; ++k) {
       Vec3 g;
       const double psi = domain_.evaluate(x, &g, nullptr);
       const double g2 = g.squaredNorm();
       if (!(g2 > 0)) break;
       Vec3 step = psi / g2 * g;
-      if (step.norm() > h_) step *= h_ / step.norm();
+      if (step.norm() > h) step *= h / step.norm();
       x -= step;
     }
     return domain_.active(x);
@@ -344,7 +351,7 @@ class Embedder {
         }
       }
       std::vector<std::size_t> votes(may_be.size(), 0);
-      for (const int f : part) ++votes[vote(faces_[f])];
+      for (const int f : part) ++votes[votes_[f]];
       int best = -1;
       std::size_t n_all = 0;
       for (std::size_t p = 0; p < votes.size(); ++p) {
@@ -444,12 +451,13 @@ class Embedder {
   const FeatureGraph& graph_;
   const std::vector<Vec3>& V_;
   const std::vector<Triangle>& faces_;
-  const double h_;
+  const std::vector<double>& h_;  ///< edge length at each vertex
   const BoundaryGraph boundary_;
   std::vector<int> owner_;    ///< per vertex: its curve, kCorner or kFree
   std::vector<int> fights_;   ///< per vertex: how often a path has lost it to another
   std::vector<int> evicted_;  ///< the paths that lost vertices to the last one
   std::vector<FeatureCurve::Place> places_;
+  std::vector<int> votes_;  ///< per face
   FeatureEmbedding made_;
 };
 
@@ -462,17 +470,20 @@ double best_wedge_quality(double angle_deg, int k) {
   return 4 * std::cbrt(q * q);
 }
 
-std::vector<Stratum> strata_of(const PiecewiseDomain& domain, const FeatureGraph& graph, double h) {
+std::vector<Stratum> strata_of(const PiecewiseDomain& domain, const FeatureGraph& graph,
+                               const std::vector<double>& h_of_corner) {
   std::vector<Stratum> strata;
   strata.reserve(static_cast<std::size_t>(domain.n_patches()) + 1 + graph.curves.size() + graph.corners.size());
   for (int p = 0; p < domain.n_patches(); ++p) strata.push_back({.dimension = 2, .patches = {p}, .ends = {}});
   strata.push_back({.dimension = 2, .patches = {}, .ends = {}});
   for (const FeatureCurve& c : graph.curves) {
     Stratum s{.dimension = 1, .patches = {c.patches[0], c.patches[1]}, .ends = {}};
+    if (c.patches[0] == c.patches[1]) s.patches.pop_back();
+    if (c.is_given) s.course = std::make_shared<const Polyline>(c.points);
     if (!c.is_closed()) {
-      const double within = std::min(h, c.length() / 2);
-      s.ends.push_back({c.points.front(), (c.points[1] - c.points[0]).normalized(), within});
-      s.ends.push_back({c.points.back(), (c.points[c.points.size() - 2] - c.points.back()).normalized(), within});
+      const auto within = [&](int end) { return std::min(h_of_corner[c.ends[end]], c.length() / 2); };
+      s.ends.push_back({c.points.front(), (c.points[1] - c.points[0]).normalized(), within(0)});
+      s.ends.push_back({c.points.back(), (c.points[c.points.size() - 2] - c.points.back()).normalized(), within(1)});
     }
     strata.push_back(std::move(s));
   }
@@ -482,7 +493,7 @@ std::vector<Stratum> strata_of(const PiecewiseDomain& domain, const FeatureGraph
 }
 
 FeatureEmbedding embed_features(const PiecewiseDomain& domain, const FeatureGraph& graph, const std::vector<Vec3>& V,
-                                const std::vector<Tet>& C, const std::vector<Triangle>& faces, double h,
+                                const std::vector<Tet>& C, const std::vector<Triangle>& faces, const std::vector<double>& h,
                                 const Context& context) {
   return Embedder(domain, graph, V, C, faces, h)(context);
 }

@@ -28,7 +28,9 @@ struct FeatureEmbedding {
 };
 
 /// The strata of a feature graph, in the order of FeatureEmbedding::strata.
-std::vector<Stratum> strata_of(const PiecewiseDomain& domain, const FeatureGraph& graph, double h);
+/// @param h_of_corner  edge length at each corner
+std::vector<Stratum> strata_of(const PiecewiseDomain& domain, const FeatureGraph& graph,
+                               const std::vector<double>& h_of_corner);
 
 /// Greatest least mean ratio of k equal tets that share an edge and fill a wedge of this angle:
 ///
@@ -54,9 +56,10 @@ double best_wedge_quality(double angle_deg, int k);
 /// sides may then be one, on psi as a whole.
 /// @param V, C   vertices and tets of omega_h, in the background
 /// @param faces  its boundary, a closed manifold
+/// @param h      edge length at each vertex
 /// \throw Cancelled
 FeatureEmbedding embed_features(const PiecewiseDomain& domain, const FeatureGraph& graph, const std::vector<Vec3>& V,
-                                const std::vector<Tet>& C, const std::vector<Triangle>& faces, double h,
+                                const std::vector<Tet>& C, const std::vector<Triangle>& faces, const std::vector<double>& h,
                                 const Context& context = {});
 
 }  // namespace umtet

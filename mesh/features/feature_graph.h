@@ -17,11 +17,13 @@ struct FeatureCorner {
 
 /// A curve f_p = f_q = 0 on the boundary of a domain, where the boundary has an edge.
 struct FeatureCurve {
-  std::array<int, 2> patches;          ///< p < q
+  std::array<int, 2> patches;          ///< p < q; p = q for a given curve inside of a patch
   std::array<int, 2> ends = {-1, -1};  ///< corners at the first and the last point; -1 for a closed curve
   std::vector<Vec3> points;            ///< on the curve; the first is repeated at the end of a closed curve
   std::vector<double> arc;             ///< arc length at the points, from 0
   std::vector<double> angle_deg;       ///< dihedral angle of the domain at the points, in (0, 360)
+  /// The curve is the polyline of the points, instead of the common zeros of its patches near them.
+  bool is_given = false;
   bool is_closed() const { return ends[0] < 0; }
   double length() const { return arc.back(); }
 

@@ -17,14 +17,17 @@ namespace {
 
 using Edge = std::pair<int, int>;
 
-double distance_to_chain(const std::vector<Vec3>& V, const std::vector<int>& chain, const Vec3& x) {
-  double least = std::numeric_limits<double>::infinity();
+/// Distance of x from a chain, in h of the nearer end of the nearest edge.
+double distance_to_chain(const PiecewiseMesh& made, const std::vector<int>& chain, const Vec3& x) {
+  double least = std::numeric_limits<double>::infinity(), h = 1;
   for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
-    const Vec3 &a = V[chain[k]], d = V[chain[k + 1]] - a;
-    const double t = std::clamp((x - a).dot(d) / d.squaredNorm(), 0., 1.);
-    least = std::min(least, (x - a - t * d).squaredNorm());
+    const Vec3 &a = made.mesh.V[chain[k]], d = made.mesh.V[chain[k + 1]] - a;
+    const double t = std::clamp((x - a).dot(d) / d.squaredNorm(), 0., 1.), distance = (x - a - t * d).squaredNorm();
+    if (!(distance < least)) continue;
+    least = distance;
+    h = made.h[chain[t < .5 ? k : k + 1]];
   }
-  return std::sqrt(least);
+  return std::sqrt(least) / h;
 }
 
 /// Angle inside between two faces with a common edge; `beyond` is the corner of the second face that is not on it.
@@ -35,14 +38,10 @@ double inner_angle_deg(const Vec3& on_edge, const Vec3& normal, const Vec3& othe
 
 }  // namespace
 
-FeatureMeasures measure_features(const PiecewiseDomain& domain, const PiecewiseMesh& made, double h) {
+FeatureMeasures measure_features(const PiecewiseDomain& domain, const PiecewiseMesh& made) {
   FeatureMeasures m;
   const std::vector<Vec3>& V = made.mesh.V;
   const BoundaryStrata strata(domain, made.strata);
-  const auto off = [&](const Vec3& x, int patch) {
-    Vec3 g;
-    return std::abs(domain.patch(patch, x, &g)) / (g.norm() * h);
-  };
   std::vector<Vec3> normal;
   std::map<Edge, std::array<int, 2>> faces;  // by edge
   for (std::size_t f = 0; f < made.faces.size(); ++f) {
@@ -66,7 +65,7 @@ FeatureMeasures measure_features(const PiecewiseDomain& domain, const PiecewiseM
   for (std::size_t c = 0; c < m.n_corners; ++c) {
     const int v = made.corner_vertex[c];
     m.n_missed_corners += v < 0 ? 1 : 0;
-    if (v >= 0) m.farthest_vertex = std::max(m.farthest_vertex, (V[v] - made.graph.corners[c].place).norm() / h);
+    if (v >= 0) m.farthest_vertex = std::max(m.farthest_vertex, (V[v] - made.graph.corners[c].place).norm() / made.h[v]);
   }
   m.n_curves = made.graph.curves.size();
   for (std::size_t c = 0; c < m.n_curves; ++c) {
@@ -78,10 +77,9 @@ FeatureMeasures measure_features(const PiecewiseDomain& domain, const PiecewiseM
       m.missed_length += curve.length();
       continue;
     }
-    for (const int v : chain)
-      for (const int p : curve.patches) m.farthest_vertex = std::max(m.farthest_vertex, off(V[v], p));
+    for (const int v : chain) m.farthest_vertex = std::max(m.farthest_vertex, strata.distance(made.stratum[v], V[v]) / made.h[v]);
     for (const Vec3& x : curve.points)
-      m.farthest_point = std::max(m.farthest_point, distance_to_chain(V, chain, x) / h);
+      m.farthest_point = std::max(m.farthest_point, distance_to_chain(made, chain, x));
     for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
       const auto [low, high] = std::minmax(chain[k], chain[k + 1]);
       const auto at = faces.find({low, high});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "mesh/classification/configuration_costs.h"
@@ -20,11 +21,13 @@ constexpr double kOnStratum = 1e-8;  // in h; projection leaves a thousandth of 
 constexpr double kSharpAngle = 40, kLongestAtSharp = 3.2;
 // Rounds in which a vertex that has no foot on its patch goes between its neighbours.
 constexpr int kAverages = 8;
+// Where smoothing and the flips begin, as shares of the time.
+constexpr double kRelax = .5, kRepair = .6;
 
 /// Targets for vertices of patches whose feet are beyond the curves around: between the targets of their neighbours.
 void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureEmbedding& embedded,
-                              const BoundaryStrata& strata, const std::vector<Vec3>& V, double h,
-                              std::vector<Vec3>& target) {
+                              const BoundaryStrata& strata, const std::vector<Vec3>& V,
+                              const std::vector<double>& h, std::vector<Vec3>& target) {
   std::vector<std::vector<int>> neighbours(V.size());
   for (const Triangle& f : faces)
     for (int k = 0; k < 3; ++k) neighbours[f[k]].push_back(f[(k + 1) % 3]);  // every edge has two faces, one each way
@@ -32,7 +35,7 @@ void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureE
   std::vector<Vec3> place = target;
   for (std::size_t v = 0; v < V.size(); ++v) {
     if (embedded.stratum[v] < 0 || target[v].allFinite()) continue;
-    if (strata.foot(embedded.stratum[v], V[v], h, place[v])) continue;
+    if (strata.foot(embedded.stratum[v], V[v], h[v], place[v])) continue;
     place[v] = V[v];
     lost.push_back(static_cast<int>(v));
   }
@@ -47,7 +50,7 @@ void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureE
         ++n;
       }
       Vec3 foot;
-      if (n == 0 || !strata.foot(embedded.stratum[v], sum / n, h, foot)) continue;
+      if (n == 0 || !strata.foot(embedded.stratum[v], sum / n, h[v], foot)) continue;
       place[v] = foot;
       is_found[v] = 1;
     }
@@ -58,7 +61,8 @@ void place_between_neighbours(const std::vector<Triangle>& faces, const FeatureE
 
 /// The layer's strata and the points that its vertices go to.
 std::vector<Vec3> set_strata(const FeatureGraph& graph, const FeatureEmbedding& embedded, const BoundaryStrata& strata,
-                             const Submesh& submesh, const std::vector<int>& of_layer, ActiveLayer& layer) {
+                             const Submesh& submesh, const std::vector<double>& h, const std::vector<int>& of_layer,
+                             ActiveLayer& layer) {
   const std::vector<Vec3>& V = submesh.mesh.V;
   std::vector<Vec3> target(V.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
   for (std::size_t c = 0; c < embedded.chains.size(); ++c) {
@@ -66,12 +70,12 @@ std::vector<Vec3> set_strata(const FeatureGraph& graph, const FeatureEmbedding& 
     for (std::size_t k = 0; k < chain.size(); ++k) {
       const Vec3 on_polyline = graph.curves[c].at(embedded.chain_arc[c][k]);
       Vec3 place;
-      if (strata.foot(embedded.stratum[chain[k]], on_polyline, layer.h, place)) target[chain[k]] = place;
+      if (strata.foot(embedded.stratum[chain[k]], on_polyline, h[chain[k]], place)) target[chain[k]] = place;
     }
   }
   for (std::size_t c = 0; c < embedded.corner_vertex.size(); ++c)
     if (const int v = embedded.corner_vertex[c]; v >= 0) target[v] = graph.corners[c].place;
-  place_between_neighbours(submesh.positive_faces, embedded, strata, V, layer.h, target);
+  place_between_neighbours(submesh.positive_faces, embedded, strata, V, h, target);
 
   layer.strata = &strata;
   std::vector<Vec3> of_vertices;
@@ -82,8 +86,9 @@ std::vector<Vec3> set_strata(const FeatureGraph& graph, const FeatureEmbedding& 
   return of_vertices;
 }
 
-/// The faces of exactly one tet, outward, in the order of their tets.
-std::vector<Triangle> boundary_faces(const std::vector<Tet>& C, const std::vector<int>& stratum) {
+/// Lists the faces of exactly one tet, outward, in the order of their tets.
+void list_boundary(const std::vector<int>& stratum, PiecewiseMesh& made) {
+  const std::vector<Tet>& C = made.mesh.C;
   struct Face {
     Triangle key, face;
     std::size_t tet;
@@ -107,10 +112,12 @@ std::vector<Triangle> boundary_faces(const std::vector<Tet>& C, const std::vecto
     if (!is_twin) alone.push_back(all[k]);
   }
   std::stable_sort(alone.begin(), alone.end(), [](const Face& a, const Face& b) { return a.tet < b.tet; });
-  std::vector<Triangle> faces;
-  faces.reserve(alone.size());
-  for (const Face& f : alone) faces.push_back(f.face);
-  return faces;
+  made.faces.clear();
+  made.face_tet.clear();
+  for (const Face& f : alone) {
+    made.faces.push_back(f.face);
+    made.face_tet.push_back(static_cast<int>(f.tet));
+  }
 }
 
 /// Flips, and the numbers of the vertices that are left.
@@ -134,6 +141,7 @@ void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const LocalFlip
   };
   keep(flipped.V);
   keep(made.background_vertex);
+  keep(made.h);
   keep(made.stratum);
   for (Tet& t : flipped.C)
     for (int& v : t) v = number[v];
@@ -148,7 +156,8 @@ void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const LocalFlip
     if (v >= 0) v = number[v];
   made.mesh.V = std::move(flipped.V);
   made.mesh.C = std::move(flipped.C);
-  made.faces = boundary_faces(made.mesh.C, made.stratum);
+  made.tet_of_chosen = std::move(flipped.origin);
+  list_boundary(made.stratum, made);
   made.face_patch.clear();
   for (const Triangle& f : made.faces) {
     const int patch = strata.patch_of(made.stratum[f[0]], made.stratum[f[1]], made.stratum[f[2]]);
@@ -157,18 +166,12 @@ void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const LocalFlip
 }
 
 /// Names the vertices that are not on their corner, curve or patch.
-void list_off_strata(const BoundaryStrata& strata, double h, PiecewiseMesh& made) {
+void list_off_strata(const BoundaryStrata& strata, PiecewiseMesh& made) {
   for (std::size_t v = 0; v < made.mesh.V.size(); ++v) {
     if (made.stratum[v] < 0) continue;
     const Vec3& x = made.mesh.V[v];
-    const Stratum& s = strata[made.stratum[v]];
-    const auto is_off = [&](int patch) {
-      Vec3 g;
-      const double f = strata.value(patch, x, &g);
-      return !(std::abs(f) <= kOnStratum * h * g.norm());
-    };
-    const bool is_off_one = s.patches.empty() ? is_off(-1) : std::any_of(s.patches.begin(), s.patches.end(), is_off);
-    if (is_off_one) made.defects.push_back({FeatureDefect::Kind::NotOnStratum, -1, -1, x});
+    if (!(strata.distance(made.stratum[v], x) <= kOnStratum * made.h[v]))
+      made.defects.push_back({FeatureDefect::Kind::NotOnStratum, -1, -1, x});
   }
 }
 
@@ -190,23 +193,34 @@ PiecewiseMeshParams::PiecewiseMeshParams() {
 }
 
 PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const BackgroundMesh& background,
-                                  const PiecewiseMeshParams& params, const Context& context) {
-  PiecewiseMesh made;
-  const ImplicitFunctionRef psi(domain);
+                                  const PiecewiseMeshParams& params, const Context& context,
+                                  const FeatureGraph* graph) {
   FastParams fast;
   fast.classification = params.classification;
-  ChosenSubmesh chosen = classified_submesh(background, psi, params.submesh, fast, context);
+  ChosenSubmesh chosen = classified_submesh(background, ImplicitFunctionRef(domain), params.submesh, fast, context);
+  return fit_piecewise_mesh(domain, background, std::move(chosen), graph, params, context);
+}
+
+PiecewiseMesh fit_piecewise_mesh(const PiecewiseDomain& domain, const BackgroundMesh& background, ChosenSubmesh chosen,
+                                 const FeatureGraph* graph, const PiecewiseMeshParams& params, const Context& context) {
+  PiecewiseMesh made;
+  const ImplicitFunctionRef psi(domain);
   made.status = chosen.status;
   made.evidence = chosen.evidence;
   if (chosen.status != UmStatus::Success) return made;
   Submesh submesh = chosen.is_whole ? std::move(chosen.submesh) : emit_submesh(background, chosen.inside);
-  const double h = background.h();
+  for (const std::int64_t v : submesh.background_vertex) made.h.push_back(background.h(v));
 
-  std::vector<Vec3> seeds;
-  for (const int v : submesh.positive_vertices) seeds.push_back(submesh.mesh.V[v]);
-  made.graph = trace_features(domain, seeds, h, context);
+  context.report("project", 0);
+  if (graph) {
+    made.graph = *graph;
+  } else {
+    std::vector<Vec3> seeds;
+    for (const int v : submesh.positive_vertices) seeds.push_back(submesh.mesh.V[v]);
+    made.graph = trace_features(domain, seeds, background.h(), context);
+  }
   FeatureEmbedding embedded =
-      embed_features(domain, made.graph, submesh.mesh.V, submesh.mesh.C, submesh.positive_faces, h, context);
+      embed_features(domain, made.graph, submesh.mesh.V, submesh.mesh.C, submesh.positive_faces, made.h, context);
   made.defects = made.graph.defects;
   made.defects.insert(made.defects.end(), embedded.defects.begin(), embedded.defects.end());
   const BoundaryStrata strata(domain, embedded.strata);
@@ -217,15 +231,27 @@ PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const Backgroun
     const auto at = std::lower_bound(submesh.background_vertex.begin(), submesh.background_vertex.end(), id);
     of_layer.push_back(static_cast<int>(at - submesh.background_vertex.begin()));
   }
-  const std::vector<Vec3> target = set_strata(made.graph, embedded, strata, submesh, of_layer, part.layer);
+  const std::vector<Vec3> target = set_strata(made.graph, embedded, strata, submesh, made.h, of_layer, part.layer);
   PNormSmoother smoother(part.layer);
-  const StratifiedProjectionReport projected = project_onto_strata(smoother, psi, target, params.projection, context);
+  const auto with_layer = [&] {
+    std::vector<Vec3> V = submesh.mesh.V;
+    for (std::size_t v = 0; v < of_layer.size(); ++v) V[of_layer[v]] = part.layer.V[v];
+    return V;
+  };
+  project_onto_strata(smoother, psi, target, params.projection, context);
+  made.projected = with_layer();
+  context.report("relax", kRelax);
   smoother.enqueue_all();
   smoother.run(psi, params.smoothing, context);
-  made.mesh = std::move(submesh.mesh);
-  for (std::size_t v = 0; v < of_layer.size(); ++v) made.mesh.V[of_layer[v]] = part.layer.V[v];
-  made.background_vertex = std::move(submesh.background_vertex);
-  made.faces = std::move(submesh.positive_faces);
+  made.smoothed = with_layer();
+  made.mesh.V = made.smoothed;
+  made.mesh.C = submesh.mesh.C;
+  made.background_vertex = submesh.background_vertex;
+  made.tet_of_chosen.resize(made.mesh.C.size());
+  std::iota(made.tet_of_chosen.begin(), made.tet_of_chosen.end(), std::int64_t{0});
+  made.faces = submesh.positive_faces;
+  made.face_tet = submesh.positive_tets;
+  made.chosen = std::move(submesh);
   made.face_patch = std::move(embedded.face_patch);
   made.strata = std::move(embedded.strata);
   made.stratum = std::move(embedded.stratum);
@@ -235,8 +261,9 @@ PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const Backgroun
   for (const FeatureCurve& c : made.graph.curves)
     if (*std::min_element(c.angle_deg.begin(), c.angle_deg.end()) < kSharpAngle)
       local_flips.longest = std::max(local_flips.longest, kLongestAtSharp);
+  context.report("repair", kRepair);
   if (params.flips) flip(psi, strata, local_flips, made, context);
-  list_off_strata(strata, h, made);
+  list_off_strata(strata, made);
   return made;
 }
 

@@ -14,6 +14,7 @@
 #include "mesh/features/feature_embedding.h"
 #include "mesh/features/feature_graph.h"
 #include "mesh/features/stratified_projection.h"
+#include "mesh/submesh/chosen_submesh.h"
 #include "mesh/submesh/submesh_params.h"
 #include "mesh/submesh/um_result.h"
 
@@ -38,7 +39,10 @@ struct PiecewiseMesh {
   UmEvidence evidence;  ///< set when status != Success
   TetMesh mesh;
   std::vector<std::int64_t> background_vertex;  ///< id in the background of each vertex, ascending
+  std::vector<double> h;                        ///< edge length of the background at each vertex
+  std::vector<std::int64_t> tet_of_chosen;      ///< per tet: its number in `chosen`, ascending; then -1 for new ones
   std::vector<Triangle> faces;                  ///< the boundary, outward
+  std::vector<int> face_tet;                    ///< per face: its tet, ascending
   std::vector<int> face_patch;                  ///< per face; -1: no single patch
   FeatureGraph graph;                           ///< the curves and corners of the domain
   std::vector<Stratum> strata;                  ///< as FeatureEmbedding::strata
@@ -50,6 +54,10 @@ struct PiecewiseMesh {
   std::vector<FeatureDefect>
       defects;  ///< everything that is not as the domain asks for; the mesh is valid all the same
   LocalFlipReport flips;
+  /// The mesh before the flips: omega_h with coordinates of the background, and its vertices after projection and after
+  /// smoothing.
+  Submesh chosen;
+  std::vector<Vec3> projected, smoothed;
 };
 
 /// Boundary-fitting mesh of a piecewise smooth domain. Its sharp curves are chains of edges, its corners vertices, and
@@ -64,8 +72,18 @@ struct PiecewiseMesh {
 ///    tets at every edge, where one would often be better.
 ///
 /// The bytes are the same for any number of threads.
+/// @param graph  the curves and corners; null: they are traced. \pre not null unless domain.decides_by_signs()
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 PiecewiseMesh make_piecewise_mesh(const PiecewiseDomain& domain, const BackgroundMesh& background,
-                                  const PiecewiseMeshParams& params = {}, const Context& context = {});
+                                  const PiecewiseMeshParams& params = {}, const Context& context = {},
+                                  const FeatureGraph* graph = nullptr);
+
+/// Steps 2 to 4 of make_piecewise_mesh(). Reports the steps "project", "relax" and "repair".
+/// @param chosen  result of choose_submesh() in UmMode::Fast with params.classification; a failure there is passed on
+/// @param graph   the curves and corners of the domain, where they are known; null: they are traced
+/// \throw as make_piecewise_mesh()
+PiecewiseMesh fit_piecewise_mesh(const PiecewiseDomain& domain, const BackgroundMesh& background, ChosenSubmesh chosen,
+                                 const FeatureGraph* graph = nullptr, const PiecewiseMeshParams& params = {},
+                                 const Context& context = {});
 
 }  // namespace umtet

@@ -160,6 +160,31 @@ std::vector<std::vector<int>> patch_nodes(const SolverMesh& mesh) {
   return nodes;
 }
 
+std::vector<int> curve_nodes(const MeshCurve& curve) {
+  std::vector<int> nodes;
+  for (const auto& [a, b] : curve.edges) nodes.insert(nodes.end(), {a, b});
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+void set_curves(SolverMesh& mesh, std::vector<MeshCurve> curves) {
+  std::set<std::string> names = {lower(mesh.body.name), kWholeBoundary};
+  for (const MeshPart& patch : mesh.patches) names.insert(lower(patch.name));
+  for (const MeshCurve& curve : curves) {
+    const std::string& name = curve.part.name;
+    if (const std::string problem = problem_of_name(name); !problem.empty())
+      throw std::invalid_argument(fmt::format("the name '{}' {}", name, problem));
+    if (!names.insert(lower(name)).second)
+      throw std::invalid_argument(fmt::format("two parts are called {} (case aside)", name));
+    for (const int v : curve_nodes(curve)) {
+      if (v < 0 || static_cast<std::size_t>(v) >= mesh.nodes.size())
+        throw std::invalid_argument(fmt::format("curve {}: there is no node {}", name, v));
+    }
+  }
+  mesh.curves = std::move(curves);
+}
+
 std::vector<int> boundary_nodes(const SolverMesh& mesh) {
   std::vector<int> nodes = mesh.faces();
   std::sort(nodes.begin(), nodes.end());

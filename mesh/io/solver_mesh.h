@@ -25,6 +25,8 @@ struct SolverMesh {
   std::vector<int> face_patch;              ///< index into patches
   std::vector<MeshPart> patches;
   MeshPart body{"body", 1};
+  /// Sharp edges: sets of nodes, and lines in .msh. Formats without such sets omit them; so do tets with 10 nodes.
+  std::vector<MeshCurve> curves;
   std::map<std::string, FieldValues> point_data;  ///< one value per node; formats that cannot store it omit it
   std::map<std::string, FieldValues> cell_data;   ///< one value per tet; formats that cannot store it omit it
   /// Values for boundary conditions: one value per node, NaN where unknown. Written as point_data, and to .msh, too.
@@ -62,6 +64,11 @@ void set_patches(SolverMesh& mesh, std::vector<int> face_patch, std::vector<Mesh
 
 /// The nodes of every patch, ascending.
 std::vector<std::vector<int>> patch_nodes(const SolverMesh& mesh);
+/// The nodes of a curve, ascending.
+std::vector<int> curve_nodes(const MeshCurve& curve);
+/// Sets the curves. \throw std::invalid_argument for a node that does not exist, a problem of a name, or a name of
+///        another part, as set_patches()
+void set_curves(SolverMesh& mesh, std::vector<MeshCurve> curves);
 /// The nodes of all patches, ascending.
 std::vector<int> boundary_nodes(const SolverMesh& mesh);
 /// Checks a mesh. \throw std::invalid_argument for sizes or indices that contradict each other

@@ -54,9 +54,9 @@ const char* section_of(Stage stage) { return stage == Stage::LevelSet ? "reconst
 
 bool is_artefact(Stage stage, const std::string& name) {
   if (stage == Stage::Cloud) return name == "cloud.ply" || name == "triangles.ply";
-  if (stage == Stage::LevelSet) return name == "level_set.vti";
-  for (const char* mesh :
-       {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv", "too_thin.vtp", "defects.vtp", "iterates.pvd"}) {
+  if (stage == Stage::LevelSet) return name == "level_set.vti" || name == "features.vtp";
+  for (const char* mesh : {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv", "features.vtp", "too_thin.vtp",
+                           "defects.vtp", "iterates.pvd"}) {
     if (name == mesh) return true;
   }
   constexpr std::string_view kPass = "pass_", kSuffix = ".vtu";

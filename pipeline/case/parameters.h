@@ -146,6 +146,8 @@ class Parameters {
 
   /// \throw std::out_of_range  the table does not contain the key: a bug of the caller
   ParamSource source(const std::string& key) const { return origins_.at(key).source; }
+  /// The origin that was given to set().
+  const std::string& origin(const std::string& key) const { return origins_.at(key).text; }
 
   /// Returns the parameters that differ from their defaults and come from the case, not from this call. The input
   /// of the case is not included.

@@ -119,16 +119,15 @@ CommandParser::CommandParser() {
   add_batch();
 
   CLI::App& inspect =
-      add_command("inspect", make_inspect, "Report the contents of a cloud or an image, and likely problems");
+      add_command("inspect", make_inspect, "Report the contents of a cloud, an image or a formula, and likely problems");
   inspect
       .add_option("CLOUD", in_.input,
                   "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; image: .nii, .nrrd, "
-                  ".vti, .vtk, also .gz")
-      ->required();
+                  ".vti, .vtk, also .gz; or --implicit with --box");
   add_parameter_sources(inspect);
   for (const ParamField& f : params_fields()) {  // the reading of a text, and the prediction
     if (f.key == keys::cloud::columns || f.key == keys::mesh::h || f.key == keys::mesh::tets ||
-        f.key == keys::mesh::max_tets)
+        f.key == keys::mesh::max_tets || f.key == keys::mesh::implicit || f.key == keys::mesh::box)
       add_value(inspect, f);
     if (std::find(kOfImages.begin(), kOfImages.end(), f.key) == kOfImages.end()) continue;
     if (std::holds_alternative<bool>(f.preset)) {

@@ -33,7 +33,7 @@ struct BatchCommand {
 };
 
 struct InspectCommand {
-  std::filesystem::path cloud;
+  std::filesystem::path cloud;  ///< empty: mesh.implicit
   Parameters parameters;  ///< parameters of the predicted run
 };
 

@@ -243,6 +243,8 @@ Command make_inspect(const CLI::App& app, const CommandInputs& in) {
   InspectCommand command{in.input, flag_parameters(app, in)};
   read_parameters(
       in, [](Stage) { return true; }, command.parameters);
+  if (in.input.empty() == command.parameters.mesh().implicit.empty())
+    throw UsageError("inspect: give a file, or --implicit EXPR with --box");
   return command;
 }
 

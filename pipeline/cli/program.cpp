@@ -23,6 +23,7 @@
 #include "pipeline/output/case_diff.h"
 #include "pipeline/output/export_case.h"
 #include "pipeline/output/inspect.h"
+#include "pipeline/output/inspect_formula.h"
 #include "pipeline/output/inspect_image.h"
 #include "pipeline/output/report.h"
 #include "pipeline/output/view_files.h"
@@ -134,6 +135,11 @@ Output Execution::operator()(const CheckCommand& command) const {
 
 Output Execution::operator()(const InspectCommand& command) const {
   set_work_at_hand("inspect");
+  if (command.cloud.empty()) {
+    const FormulaInspection found = inspect_formula(command.parameters, progress);
+    progress.clear();
+    return {ExitCode::Success, inspection_text(found), {{"inspection", to_json(found)}}};
+  }
   const std::shared_ptr<const InputFile> input = open_source(command.cloud);
   if (is_grid_file(*input)) {
     const ImageInspection found = inspect_image(command.cloud, command.parameters, progress);

@@ -5,6 +5,7 @@
 
 #include "body/body.h"
 #include "mesh/io/tet_mesh_io.h"
+#include "pipeline/domain/edged_case.h"
 #include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "reconstruct/cloud/point_cloud.h"
 #include "reconstruct/level_set/level_set.h"
@@ -21,6 +22,7 @@ struct Handover {
   std::optional<TriangleMesh> triangles;          ///< triangles.ply
   NeighbourDistances near;                        ///< distances for the points of the cloud, or empty
   std::optional<LevelSet> psi;                    ///< level_set.vti
+  EdgedTriangles edged;                           ///< in the place of psi, if the sharp edges of triangles are kept
   std::optional<Domain> domain;                   ///< the meshed domain, with psi cut for h
   MeshFile mesh;                                  ///< mesh.vtu; set together with the domain
   std::shared_ptr<const MeshWithBoundary> parts;  ///< a distributed mesh, in place of domain and mesh

@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <utility>
 
+#include "body/edges/edged_body.h"
 #include "body/given_triangles.h"
 #include "body/option_names.h"
+#include "body/piecewise_body.h"
 #include "body/scan/fitted_domain.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/handover.h"
-#include "mesh/expression/expression.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/io/triangle_mesh_io.h"
 
 namespace umtet {
-
-static_assert(JointlyEvaluated<Expression>);
 
 namespace {
 
@@ -41,13 +40,28 @@ bool is_of_triangles(const CasePaths& paths, const StageRecord& cloud) {
   return std::any_of(outputs.begin(), outputs.end(), [&](const RecordedFile& f) { return f.name == name; });
 }
 
+/// Triangles with sharp edges: a function for each smooth patch.
+Domain domain_with_edges(const CasePaths& paths, const Parameters& parameters, const LevelSetReport& report,
+                         Handover* handover) {
+  EdgedTriangles edged = handover && handover->edged.body
+                             ? std::exchange(handover->edged, {})
+                             : edged_triangles(read_triangles(paths.triangles()).mesh, report.shift, parameters);
+  if (!edged.body) throw ArtefactDamaged(paths.triangles().string() + ": has no sharp edges");
+  OrientedPointCloud cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
+                                                         : read_point_cloud(paths.cloud()).cloud;
+  Domain domain = edged_domain(std::move(edged.triangles), std::move(edged.body), std::move(cloud), report.shift,
+                               parse_box(parameters.mesh().box), parameters.mesh().h);
+  domain.cloud_spacing = report.fit.cloud_spacing;
+  return domain;
+}
+
 }  // namespace
 
 Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
   const std::optional<Box> box = parse_box(parameters.mesh().box);
   if (!box) throw UsageError({Option{keys::mesh::implicit}, " needs ", Setting(option::box, "x0,y0,z0,x1,y1,z1")});
   Domain domain;
-  domain.formula = shared_function(Expression(parameters.mesh().implicit, t));
+  set_formula(domain, parameters.mesh().implicit, t);
   domain.box = *box;
   domain.diagonal = box->diagonal().norm();
   domain.complement = parameters.mesh().complement;
@@ -61,6 +75,14 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
   if (!state.record) throw ArtefactDamaged(state.reason);
   Domain domain;
   try {
+    if (has_edges(*state.record)) {
+      const LevelSetReport report = level_set_report(*state.record);
+      domain = domain_with_edges(paths, parameters, report, handover);
+      const StageState cloud = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+      if (cloud.record) domain.facts = input_facts(cloud_report(*cloud.record), report);
+      domain.complement = parameters.mesh().complement;
+      return domain;
+    }
     LevelSet psi = handover && handover->psi ? std::move(*std::exchange(handover->psi, std::nullopt))
                                              : level_set_of(paths.level_set());
     OrientedPointCloud cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
@@ -71,9 +93,11 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
     if (cloud_state.record) domain.facts = input_facts(cloud_report(*cloud_state.record), report);
     domain.fitted = FittedLevelSet(*domain.level_set, [file = paths.level_set()] { return level_set_of(file); });
     if (handover && handover->triangles) {
-      domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift);
+      domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift,
+                                         parameters.reconstruct().feature_angle);
     } else if (cloud_state.record && is_of_triangles(paths, *cloud_state.record)) {
-      domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift);
+      domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift,
+                                         parameters.reconstruct().feature_angle);
     }
     if (domain.triangles) domain.level_shift = level_shift_of(paths);
   } catch (const CloudRefused& e) {  // umtet wrote all files, so an error in them is damage

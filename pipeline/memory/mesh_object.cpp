@@ -27,8 +27,14 @@ SolverMesh all_of(const MeshObject& m, const MeshFile& content) {
 SolverMesh for_solver(const MeshObject& m, const MeshFile& content) {
   SolverMesh made = all_of(m, content);
   if (!m.certificate) return made;
-  const MarkedFaces marked = marked_faces(made, content, m.certificate->measured.domain.support);
-  take_holes(made, marked.in_holes, [](const std::string&) {});
+  MarkedFaces marked = marked_faces(made, content, m.certificate->measured.domain.support);
+  mark_patches(m.domain, made, m.result.final, m.h, marked);
+  const Warn nobody = [](const std::string&) {};
+  if (marked.of_body.empty()) {
+    take_holes(made, marked.in_holes, nobody);
+  } else {
+    divide_boundary(made, marked, {}, {}, nobody);
+  }
   return made;
 }
 
@@ -38,6 +44,7 @@ Domain without_psi(Domain&& domain) {
   Domain left;
   left.shift = domain.shift;
   left.cloud = std::move(domain.cloud);
+  left.piecewise = std::move(domain.piecewise);
   left.notices = std::move(domain.notices);
   return left;
 }
@@ -81,7 +88,9 @@ std::vector<std::pair<std::string, std::vector<int>>> MeshObject::patches(const 
   const MeshFile content = final_content(domain, result);
   SolverMesh made = all_of(*this, content);
   const auto support = certificate ? certificate->measured.domain.support : std::nullopt;
-  divide_boundary(made, marked_faces(made, content, support), domain.cloud, parameters, [](const std::string&) {});
+  MarkedFaces marked = marked_faces(made, content, support);
+  mark_patches(domain, made, result.final, h, marked);
+  divide_boundary(made, marked, domain.cloud, parameters, [](const std::string&) {});
   std::vector<std::pair<std::string, std::vector<int>>> named;
   for (const MeshPart& patch : made.patches) named.emplace_back(patch.name, std::vector<int>());
   for (std::size_t f = 0; f < made.n_faces(); ++f) {

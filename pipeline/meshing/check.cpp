@@ -53,11 +53,12 @@ std::vector<Triangle> faces_but(std::vector<Triangle> walls, const TetMesh& mesh
   return faces;
 }
 
-SecondOrderReport check_second_order(const QuadraticTetMesh& mesh, const CertificateInput& corners, double h) {
+SecondOrderReport check_second_order(const QuadraticTetMesh& mesh, const CertificateInput& corners,
+                                     const std::optional<ImplicitFunctionRef>& psi, double h) {
   SecondOrderInput input;
   input.mesh = &mesh;
   input.h = h;
-  input.psi = corners.psi;
+  input.psi = psi;
   input.wall_faces = corners.wall_faces;
   input.coordinate_rounding = corners.coordinate_rounding;
   input.context = corners.context;
@@ -92,7 +93,6 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
       input.h = mesh_report(*state.record).measured.mesh.h;
       domain->limit_detail(input.h);
     }
-    input.psi = domain->psi();
     input.coordinate_rounding = coordinate_rounding(*domain);
     if (domain->complement) {
       walls = faces_at_walls(mesh, domain->box, 2 * input.coordinate_rounding);
@@ -106,11 +106,12 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
   MeshCheck check;
   check.file = file.string();
   check.units = units_of(parameters);
-  check.mesh = certify(input);
+  check.mesh = domain ? certify_against(*domain, input) : certify(input);
   stop_if_interrupted();
   MeshMeasures measured = measures_of(check.mesh, domain ? &*domain : nullptr, until_interrupted());
   if (content.quadratic) {
-    check.second_order = check_second_order(*content.quadratic, input, check.mesh.h);
+    const auto psi = domain ? std::optional(domain->psi()) : std::nullopt;
+    check.second_order = check_second_order(*content.quadratic, input, psi, check.mesh.h);
     for (std::string& reason : failures(*check.second_order)) measured.reasons.push_back(std::move(reason));
   }
   check.is_valid = measured.is_valid;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "body/fidelity/closed_holes.h"
+#include "body/fidelity/patch_measures.h"
 #include "body/patches/boundary_division.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
@@ -45,10 +46,11 @@ std::map<int, std::string> names_of_labels(const OrientedPointCloud& cloud, bool
   return names;
 }
 
-/// Sets the patches of a division, and passes its notices on.
+/// Sets the patches and curves of a division, and passes its notices on.
 void take_division(SolverMesh& mesh, BoundaryDivision division, const Warn& warn) {
   for (const std::string& notice : division.notices) warn(notice);
   set_patches(mesh, std::move(division.face_patch), std::move(division.patches));
+  if (!division.curves.empty()) set_curves(mesh, std::move(division.curves));
 }
 
 std::vector<char> faces_at_walls(const SolverMesh& mesh, const MeshFile& file) {
@@ -84,6 +86,12 @@ void take_holes(SolverMesh& mesh, const std::vector<char>& in_holes, const Warn&
   take_division(mesh, std::move(division), warn);
 }
 
+void mark_patches(const Domain& domain, const SolverMesh& mesh, const std::vector<Vec3>& V, double h,
+                  MarkedFaces& marked) {
+  if (!domain.piecewise) return;
+  marked.of_body = patches_by_position(domain, V, mesh.triangles(), h, until_interrupted());
+}
+
 MarkedFaces marked_faces(const SolverMesh& mesh, const MeshFile& file, const std::optional<SupportReport>& support) {
   return {faces_at_walls(mesh, file), faces_in_holes(mesh, file, support)};
 }
@@ -102,7 +110,8 @@ void divide_boundary(SolverMesh& mesh, const MarkedFaces& marked, const Oriented
                       {.angle = parameters.output().patch_angle,
                        .planar = parameters.output().patch_planar,
                        .label_min_area = parameters.output().label_min_area,
-                       .names = names_of_labels(cloud, has_walls(marked.at_wall), parameters, names_of_file)});
+                       .names = names_of_labels(cloud, has_walls(marked.at_wall), parameters, names_of_file)},
+                      marked.of_body);
   take_holes(marked.in_holes, division);
   take_division(mesh, std::move(division), warn);
 }

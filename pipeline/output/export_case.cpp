@@ -13,6 +13,7 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
+#include "pipeline/domain/load_domain.h"
 #include "pipeline/meshing/sample_fields.h"
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/part_patches.h"
@@ -199,7 +200,14 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
   try {
     MeshFile file = read_tet_mesh(paths.mesh());
     SolverMesh mesh = file.quadratic ? solver_mesh(*file.quadratic) : solver_mesh(file.mesh);
-    const MarkedFaces marked = marked_faces(mesh, file, mesh_report(record).measured.domain.support);
+    const MeshMeasures measured = mesh_report(record).measured;
+    MarkedFaces marked = marked_faces(mesh, file, measured.domain.support);
+    if (measured.features) {
+      const Domain domain = load_domain(paths, parameters);
+      std::vector<Vec3> V = file.mesh.V;
+      for (Vec3& x : V) x -= domain.shift;
+      mark_patches(domain, mesh, V, measured.mesh.h, marked);
+    }
     std::map<std::string, FieldValues>& of_nodes = file.quadratic ? file.quadratic_data : file.point_data;
     for (auto it = of_nodes.begin(); it != of_nodes.end();) {
       const auto next = std::next(it);

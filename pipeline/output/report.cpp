@@ -163,12 +163,14 @@ Figures figures_of(const CasePaths& paths, const Parameters& parameters, const M
 
 /// Returns the mesh with the patches of exported files.
 SolverMesh divided(const CasePaths& paths, const MeshFile& mesh, const Domain& domain, const Parameters& parameters,
-                   const std::optional<SupportReport>& support) {
+                   const MeshMeasures& measured) {
   SolverMesh made = solver_mesh(mesh.mesh);
   for (Vec3& x : made.nodes) x -= domain.shift;
+  MarkedFaces marked = marked_faces(made, mesh, measured.domain.support);
+  mark_patches(domain, made, made.nodes, measured.mesh.h, marked);
   try {
     divide_boundary(
-        made, marked_faces(made, mesh, support), domain.cloud, parameters, [](const std::string&) {},
+        made, marked, domain.cloud, parameters, [](const std::string&) {},
         label_names_of_file(paths));
   } catch (const UsageError&) {
     // An export refuses names for labels that do not exist; here all faces then stay one patch.
@@ -193,12 +195,11 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
   }
   stop_if_interrupted();
   const MeshFile& mesh = handover.mesh;
-  const std::optional<SupportReport>& support = certificate.measured.domain.support;
   ReportScene scene;
   Figures figures;
   tbb::parallel_invoke(
       [&] {
-        scene = report_scene(mesh, *handover.domain, divided(paths, mesh, *handover.domain, parameters, support));
+        scene = report_scene(mesh, *handover.domain, divided(paths, mesh, *handover.domain, parameters, certificate.measured));
       },
       [&] { figures = figures_of(paths, parameters, mesh, certificate); });
   stop_if_interrupted();

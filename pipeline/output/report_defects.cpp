@@ -25,6 +25,8 @@ const char* said_of(DefectKind kind) {
       return "components or handles that differ";
     case DefectKind::Missed:
       return "samples missed";
+    case DefectKind::Edges:
+      return "sharp edges or corners lost";
   }
   return "";
 }

@@ -122,6 +122,13 @@ std::string check_list(const Certificate& c) {
                     value("/cloud/n_missed_places", cloud->n_missed_places)),
         std::nullopt);
   }
+  if (const std::optional<FeatureReport>& f = c.measured.features) {
+    add(fmt::format("sharp edges and corners in the mesh, of {} and {}", value("/features/curves", f->n_curves),
+                    value("/features/corners", f->n_corners)),
+        f->has_all()         ? std::optional(true)
+        : c.verdict.fits_psi ? std::nullopt
+                             : std::optional(false));
+  }
   const DefectReport& defects = c.measured.defects;
   if (const std::size_t n = defects.n(); n > 0) {
     add(fmt::format("<a href=\"#places\">defects, where the mesh is not ψ = 0: {}</a>", value("/places/n", n)),
@@ -168,6 +175,13 @@ std::string headline_cards(const Certificate& c) {
     card(value("/cloud/p99_distance_over_h", cloud->p99 / mesh.h, 3) + " h",
          "distance of 99&nbsp;% of the samples; max " + value("/cloud/max_distance_over_h", cloud->max / mesh.h, 3) +
              " h");
+  }
+  if (const std::optional<FeatureReport>& f = c.measured.features) {
+    card(value("/features/curves", f->n_curves),
+         "sharp edges, " + value("/features/corners", f->n_corners) + " corners, " +
+             value("/features/patches", f->n_patches) + " patches; angles off by at most " +
+             value("/features/max_angle_off_deg", f->max_angle_off_deg, 2) + "°; best possible Q at them " +
+             value("/features/wedge_quality", f->wedge_quality, 3));
   }
   if (const std::optional<TriangleDistances>& given = c.measured.triangles) {
     card(value("/triangles/max_distance_over_h", given->max_over_h, 3) + " h",

@@ -79,6 +79,7 @@ class SceneMaker {
   void coarsen_faces();
   void take_tets();
   void take_points();
+  void write_curves(const SolverMesh& divided);
   void write_indices(const char* name, const std::vector<FacedTet>& list);
   void write_positions(const char* name, const std::vector<Vec3>& points);
   void write_bytes(const char* name, const std::vector<std::uint8_t>& bytes) {
@@ -221,6 +222,14 @@ void SceneMaker::take_points() {
   write_positions("points", points);
 }
 
+void SceneMaker::write_curves(const SolverMesh& divided) {
+  std::vector<Vec3> ends;
+  for (const MeshCurve& curve : divided.curves) {
+    for (const auto& [a, b] : curve.edges) ends.insert(ends.end(), {mesh_.V[a], mesh_.V[b]});
+  }
+  if (!ends.empty()) write_positions("curves", ends);
+}
+
 void SceneMaker::write_positions(const char* name, const std::vector<Vec3>& points) {
   std::vector<std::uint16_t> steps;
   const Vec3 scale = kSteps16 * box_.sizes().cwiseMax(1e-300).cwiseInverse();
@@ -347,6 +356,7 @@ ReportScene SceneMaker::operator()(const SolverMesh& divided) {
   for (const int v : shown_) positions.push_back(mesh_.V[v]);
   write_positions("positions", positions);
   write_values();
+  write_curves(divided);
   take_points();
   return std::move(scene_);
 }

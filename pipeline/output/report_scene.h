@@ -63,6 +63,7 @@ Json to_json(const SceneHead& head);
 ///   head.ranges
 ///   face_patch   one byte each, if there are several patches: index into head.patches, modulo 256
 ///   points       3 x uint16 per sample, in 65535ths of the box
+///   curves       6 x uint16 per edge of a curve, if there are any: its ends, in 65535ths of the box
 ///   vertex_field_N   one byte each, or three for colours, of head.fields[N], in 254ths of the range; 255: no value
 struct ReportScene {
   SceneHead head;

@@ -52,6 +52,7 @@ Json measured_blocks(const MeshMeasures& m) {
   json["cloud"] = m.cloud ? to_json(*m.cloud, m.mesh.h) : Json(nullptr);
   if (m.triangles) json["triangles"] = to_json(*m.triangles);
   if (m.labels) json["labels"] = to_json(*m.labels);
+  if (m.features) json["features"] = to_json(*m.features);
   json["resolution"] = to_json(m.resolution, m.mesh.h);
   if (m.sizes) json["sizes"] = to_json(*m.sizes);
   if (m.input) json["input"] = to_json(*m.input);
@@ -77,6 +78,7 @@ MeshMeasures measured_blocks_from(const Json& json) {
   if (!json.at("cloud").is_null()) m.cloud = distances_from(json.at("cloud"));
   if (json.contains("triangles")) m.triangles = triangle_distances_from(json.at("triangles"));
   if (json.contains("labels")) m.labels = label_volume_from(json.at("labels"));
+  if (json.contains("features")) m.features = features_from(json.at("features"));
   m.resolution = resolution_from(json.at("resolution"));
   if (json.contains("sizes")) m.sizes = sizes_from(json.at("sizes"));
   if (json.contains("input")) m.input = input_facts_from(json.at("input"));

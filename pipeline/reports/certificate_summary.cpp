@@ -154,6 +154,27 @@ std::string triangles_line(const MeshMeasures& m, const std::string& unit) {
          edges;
 }
 
+std::string counted(std::size_t n, const char* one, const char* many) {
+  return fmt::format("{} {}", thousands(n), n == 1 ? one : many);
+}
+
+/// Returns the line on the sharp edges of the body; empty for a smooth body.
+std::string features_line(const std::optional<FeatureReport>& f) {
+  if (!f) return "";
+  std::string out = "edges     " + counted(f->n_curves, "sharp edge", "sharp edges") + ", " +
+                    counted(f->n_corners, "corner", "corners") + ", " + counted(f->n_patches, "patch", "patches");
+  out += f->has_all() ? ": all in the mesh"
+                      : fmt::format(": the mesh lacks {}, {} and {:.3g} % of their length",
+                                    counted(f->n_missed_curves, "edge", "edges"),
+                                    counted(f->n_missed_corners, "corner", "corners"),
+                                    f->length > 0 ? 100 * f->missed_length / f->length : 0);
+  if (f->n_curves > f->n_missed_curves) {
+    out += fmt::format("; off them: vertices {:.1e} h, faces' angles {:.2g} degrees; best Q of their wedges {:.2f}",
+                       f->max_vertex_over_h, f->max_angle_off_deg, f->wedge_quality);
+  }
+  return out + "\n";
+}
+
 std::string pieces_text(const PieceCount& count) {
   return count.by_points == count.by_faces ? fmt::format("{}", count.by_points)
                                            : fmt::format("{} to {}", count.by_points, count.by_faces);
@@ -225,8 +246,8 @@ std::string summary(const Certificate& c) {
   return verdict_lines(c.verdict, judgements(c.verdict, has_input(m)), c.blame) +
          mesh_lines(m.mesh, unit, c.n_tets_asked) + sizes_line(m.sizes, unit) + second_order_lines(m.second_order) +
          domain_line(m.domain) + holes_line(m.domain.support, unit) + cloud_line(m, unit) + triangles_line(m, unit) +
-         labels_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) + defects_line(m.defects) +
-         time_line(c.run);
+         features_line(m.features) + labels_line(m, unit) + missed_line(m, unit) + thin_line(m.resolution) +
+         defects_line(m.defects) + time_line(c.run);
 }
 
 std::string summary(const MeshCheck& c) {

@@ -193,6 +193,40 @@ TriangleDistances triangle_distances_from(const Json& json) {
   return d;
 }
 
+Json to_json(const FeatureReport& f) {
+  return {{"patches", f.n_patches},
+          {"corners", f.n_corners},
+          {"curves", f.n_curves},
+          {"missed_corners", f.n_missed_corners},
+          {"missed_curves", f.n_missed_curves},
+          {"length", f.length},
+          {"missed_length", f.missed_length},
+          {"max_vertex_distance_over_h", f.max_vertex_over_h},
+          {"max_curve_distance_over_h", f.max_curve_over_h},
+          {"max_angle_off_deg", f.max_angle_off_deg},
+          {"min_angle_deg", f.min_angle_deg},
+          {"wedge_quality", f.wedge_quality},
+          {"min_cos_normal", f.min_cos_normal},
+          {"faces_without_patch", f.n_faces_without_patch}};
+}
+
+FeatureReport features_from(const Json& json) {
+  return {.n_patches = json.at("patches"),
+          .n_corners = json.at("corners"),
+          .n_curves = json.at("curves"),
+          .n_missed_corners = json.at("missed_corners"),
+          .n_missed_curves = json.at("missed_curves"),
+          .length = number_from(json.at("length")),
+          .missed_length = number_from(json.at("missed_length")),
+          .max_vertex_over_h = number_from(json.at("max_vertex_distance_over_h")),
+          .max_curve_over_h = number_from(json.at("max_curve_distance_over_h")),
+          .max_angle_off_deg = number_from(json.at("max_angle_off_deg")),
+          .min_angle_deg = number_from(json.at("min_angle_deg")),
+          .wedge_quality = number_from(json.at("wedge_quality")),
+          .min_cos_normal = number_from(json.at("min_cos_normal")),
+          .n_faces_without_patch = json.at("faces_without_patch")};
+}
+
 Json to_json(const ResolutionReport& r, double h) {
   Json json = {{"kappa_h_max", r.kappa_h_max},
                {"feature_size_over_h_min", r.feature_size_over_h_min},

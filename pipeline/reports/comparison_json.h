@@ -25,6 +25,10 @@ SampleDistances distances_from(const Json& json);
 Json to_json(const TriangleDistances& distances);
 TriangleDistances triangle_distances_from(const Json& json);
 
+/// Returns the block `features`.
+Json to_json(const FeatureReport& report);
+FeatureReport features_from(const Json& json);
+
 /// Returns the block `resolution`.
 Json to_json(const ResolutionReport& report, double h);
 ResolutionReport resolution_from(const Json& json);

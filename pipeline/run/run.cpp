@@ -8,7 +8,9 @@
 #include "body/scan/cloud_preparation.h"
 #include "body/sizing/wanted_detail.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
+#include "pipeline/domain/edged_case.h"
 #include "pipeline/output/report.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/run/renewal.h"
@@ -18,6 +20,9 @@
 namespace umtet {
 namespace fs = std::filesystem;
 namespace {
+
+// Origin of --edges off in a case whose mesh with edges failed. It stays until the parameters are dropped.
+constexpr const char* kLostEdges = "for a mesh that passes";
 
 class CaseRun {
  public:
@@ -35,6 +40,8 @@ class CaseRun {
   std::vector<Stage> stages() const;
   /// Makes the stage unless it is done. If it would replace a finished result, it is made beside it.
   StageRecord ensure(Stage stage);
+  /// Makes the stages of this run. If a mesh with sharp edges fails, it is made again from one smooth level set.
+  std::vector<StageRecord> make_all();
   /// Moves new results into place, and writes certificate and report.
   /// @param records  records of stages()
   RunOutcome finish(const std::vector<StageRecord>& records);
@@ -43,6 +50,7 @@ class CaseRun {
   std::optional<Parameters> former_parameters();
   void take_former_parameters(const Parameters& former);
   void sample_for_h();
+  void smooth_edges();
   void tell_changes(const Parameters& former);
   bool is_kept(Stage stage) const;
   fs::path source() const;
@@ -53,6 +61,8 @@ class CaseRun {
   bool must_run(Stage stage, const StageState& state) const;
   void make(Stage stage);
   void tell(Stage stage, const StageState& state) const;
+  bool may_smooth_edges() const;
+  std::string failure_of_edges(const std::vector<StageRecord>& records) const;
   void certify(const StageRecord& mesh);
   void report();
 
@@ -124,6 +134,21 @@ void CaseRun::tell_changes(const Parameters& former) {
   }
 }
 
+/// Sharp edges are for flat tets of the fast mode, without walls; for others the level set is one smooth function.
+void CaseRun::smooth_edges() {
+  const char* key = keys::reconstruct::edges;
+  const bool is_derived = parameters_.source(key) == ParamSource::Derived;
+  if (is_derived && parameters_.origin(key) != kLostEdges) parameters_.drop(key);
+  if (parameters_.source(key) > ParamSource::Case || request_.until != Stage::Mesh) return;
+  const MeshParameters& mesh = parameters_.mesh();
+  const char* why = mesh.order > 1                   ? "for --order 2"
+                    : mesh.mode == UmMode::Paper     ? "for --mode paper"
+                    : mesh.box_walls                 ? "for --box-walls"
+                    : background_file(parameters_)    ? "for --background"
+                                                     : nullptr;
+  if (why) parameters_.set(key, "off", ParamSource::Derived, why);
+}
+
 /// Triangles are sampled as finely as the mesh needs, unless the user sets the spacing. The spacing is a parameter like
 /// all others, so another h makes other samples; a spacing derived from a former h is dropped with it. The same applies
 /// to closing openings before psi is fitted.
@@ -134,6 +159,7 @@ void CaseRun::sample_for_h() {
   if (parameters_.source(keys::cloud::cap) == ParamSource::Derived) parameters_.drop(keys::cloud::cap);
   if (is_left && parameters_.source(keys::cloud::cap) <= ParamSource::Case)
     parameters_.set(keys::cloud::cap, "false", ParamSource::Derived, "for --close");
+  smooth_edges();
   if (request_.until != Stage::Mesh) return;
   const char* key = keys::cloud::sample_spacing;
   if (parameters_.source(key) == ParamSource::Derived) parameters_.drop(key);
@@ -304,6 +330,42 @@ std::vector<Stage> CaseRun::stages() const {
   return list;
 }
 
+/// Returns whether the user leaves it to the program to keep edges, and the level set may be made again.
+bool CaseRun::may_smooth_edges() const {
+  return request_.from <= Stage::LevelSet && request_.until == Stage::Mesh && !has_own_psi(parameters_.mesh()) &&
+         parameters_.source(keys::reconstruct::edges) <= ParamSource::Case &&
+         parameters_.reconstruct().edges == SharpEdgeUse::Auto && fs::exists(paths_.record(Stage::LevelSet)) &&
+         has_edges(read_record(paths_, Stage::LevelSet));
+}
+
+/// Returns the first reason for which a mesh with edges fails; empty if it passes.
+std::string CaseRun::failure_of_edges(const std::vector<StageRecord>& records) const {
+  const Verdict verdict = judge(mesh_report(records.back()).measured, parameters_.output());
+  return verdict.passes() ? "" : verdict.reasons.front();
+}
+
+std::vector<StageRecord> CaseRun::make_all() {
+  std::vector<StageRecord> records;
+  std::string failure;
+  try {
+    for (const Stage stage : stages()) records.push_back(ensure(stage));
+    if (may_smooth_edges()) failure = failure_of_edges(records);
+  } catch (const MeshingImpossible& e) {
+    if (!may_smooth_edges()) throw;
+    failure = text_of(e.message, as_flag);
+  } catch (const ResourceLimit& e) {
+    if (!may_smooth_edges()) throw;
+    failure = text_of(e.message, as_flag);
+  }
+  if (failure.empty()) return records;
+  progress_.warn("mesh: with sharp edges it fails (" + failure +
+                 "); making it again from one smooth level set, which rounds them (--edges auto shows the one that fails)");
+  parameters_.set(keys::reconstruct::edges, "off", ParamSource::Derived, kLostEdges);
+  records.clear();
+  for (const Stage stage : stages()) records.push_back(ensure(stage));
+  return records;
+}
+
 RunOutcome CaseRun::finish(const std::vector<StageRecord>& records) {
   if (request_.keeps_parts) outcome_.parts = handover_.parts;
   handover_.parts.reset();
@@ -326,9 +388,7 @@ RunOutcome run_case(const RunRequest& request, Progress& progress) {
   const CaseLock lock(request.case_folder);
   CaseRun run(request, progress);
   run.begin();
-  std::vector<StageRecord> records;
-  for (const Stage stage : run.stages()) records.push_back(run.ensure(stage));
-  return run.finish(records);
+  return run.finish(run.make_all());
 }
 
 }  // namespace umtet

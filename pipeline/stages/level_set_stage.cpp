@@ -1,18 +1,23 @@
+#include <fmt/format.h>
+
 #include <chrono>
 #include <optional>
 #include <utility>
 
+#include "body/edges/edged_body.h"
 #include "body/scan/level_set_fit.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
+#include "pipeline/meshing/feature_files.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/cloud/neighbours/cloud_neighbours.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
+#include "reconstruct/io/triangle_mesh_io.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -36,11 +41,62 @@ std::optional<ExactSamples> exact_samples(const CasePaths& paths) {
   return ExactSamples{report.triangles->body.least_spacing};
 }
 
+/// Returns triangles with sharp edges and their patches; without a body if there is nothing to keep.
+EdgedTriangles edges_to_keep(const StageContext& context) {
+  if (context.parameters.reconstruct().edges == SharpEdgeUse::Off || !exact_samples(context.paths)) return {};
+  try {
+    TriangleMesh mesh =
+        context.handover.triangles ? *context.handover.triangles : read_triangles(context.paths.triangles()).mesh;
+    const Vec3 shift = middle_of(mesh);
+    return edged_triangles(std::move(mesh), shift, context.parameters);
+  } catch (const CloudRefused& e) {  // umtet wrote the file, so the user's file is not at fault
+    throw ArtefactDamaged(e.what());
+  }
+}
+
+/// Writes the curves where patches meet.
+LevelSetReport write_edges(const StageContext& context, const EdgedTriangles& edged) {
+  LevelSetReport report;
+  PiecewiseMesh curves;
+  curves.graph = *edged.body->graph;
+  curves.chains.resize(curves.graph.curves.size());
+  report.shift = edged.shift;
+  const StageState state = inspect_stage(context.paths, Stage::Cloud, Json::object(), std::nullopt);
+  const TriangleReport& samples = cloud_report(*state.record).triangles->body;
+  report.fit.n_points = samples.n_samples;
+  report.fit.cloud_spacing = samples.spacing;
+  write_features(context.paths.folder(Stage::LevelSet) / kFeatureFile, curves, edged.shift);
+  return report;
+}
+
+void write_record_of(const StageContext& context, const std::vector<RecordedFile>& inputs, const LevelSetReport& report,
+                     std::chrono::steady_clock::time_point start, const char* file) {
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  write_record(context.paths,
+               {Stage::LevelSet,
+                context.parameters.section("reconstruct"),
+                inputs,
+                {},
+                to_json(report, wanted_mesh(context.parameters)),
+                run_of_stage(seconds.count(), context.threads)},
+               {file});
+}
+
 }  // namespace
 
 void run_level_set_stage(const StageContext& context) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<RecordedFile> inputs = recorded_inputs(context.paths, Stage::LevelSet, context.parameters);
+  if (EdgedTriangles edged = edges_to_keep(context); edged.body) {
+    const FeatureGraph& graph = *edged.body->graph;
+    context.progress.say(fmt::format("level-set: {} sharp edges, {} corners, {} patches: each patch has a function of "
+                                     "its own (--edges off makes one smooth level set)",
+                                     graph.curves.size(), graph.corners.size(), edged.body->domain.n_patches()));
+    begin_writing(context, Stage::LevelSet);
+    write_record_of(context, inputs, write_edges(context, edged), start, kFeatureFile);
+    context.handover.edged = std::move(edged);
+    return;
+  }
   OrientedPointCloud cloud = take_cloud(context);
   const Context call{
       .progress = [&](const char* step, double part) { context.progress.report("level-set", step, part); },
@@ -59,15 +115,7 @@ void run_level_set_stage(const StageContext& context) {
   begin_writing(context, Stage::LevelSet);
   write_artefact(context.paths.level_set(),
                  [&](const fs::path& temporary) { write_level_set(temporary, fit.psi, fit.report.shift); });
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  write_record(context.paths,
-               {Stage::LevelSet,
-                context.parameters.section("reconstruct"),
-                inputs,
-                {},
-                to_json(fit.report, wanted_mesh(context.parameters)),
-                run_of_stage(seconds.count(), context.threads)},
-               {"level_set.vti"});
+  write_record_of(context, inputs, fit.report, start, "level_set.vti");
   context.handover.cloud = std::move(cloud);
   context.handover.psi = std::move(fit.psi);
 }

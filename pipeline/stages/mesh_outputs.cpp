@@ -19,6 +19,7 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/defect_files.h"
+#include "pipeline/meshing/feature_files.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/second_order_file.h"
 
@@ -161,6 +162,10 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
   if (!best.thin.empty()) {
     write_thin_places(folder / "too_thin.vtp", best.thin, domain.shift);
     names.emplace_back("too_thin.vtp");
+  }
+  if (best.features && !best.features->graph.curves.empty()) {
+    write_features(folder / "features.vtp", *best.features, domain.shift);
+    names.emplace_back("features.vtp");
   }
   if (!best.defects.empty()) {
     write_defects(folder / "defects.vtp", best.defects);

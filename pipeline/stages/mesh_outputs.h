@@ -11,7 +11,8 @@
 namespace umtet {
 
 /// Writes all files of the mesh stage except its record to 3-mesh/, and replaces the files of the former run:
-/// omega_h.vtu, projected.vtu, mesh.vtu, quality.csv; too_thin.vtp and defects.vtp if there are thin places or defects;
+/// omega_h.vtu, projected.vtu, mesh.vtu, quality.csv; features.vtp of a body with sharp edges;
+/// too_thin.vtp and defects.vtp if there are thin places or defects;
 /// pass_N.vtu and iterates.pvd if iterates were kept. If they were not kept, omega_h.vtu and projected.vtu contain only
 /// tets with a vertex that moves; the others are in mesh.vtu. The contents of mesh.vtu are handed over to later stages.
 /// @param best  its tets, their ids and the chosen vertices are moved out

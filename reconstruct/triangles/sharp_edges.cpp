@@ -173,7 +173,7 @@ bool Finder::turns_like_its_neighbours(std::size_t e) const {
   return false;
 }
 
-/// A vertex at which a curve ends. A curve of two edges that turns as much as a sure edge has a kink.
+/// A vertex at which a curve ends, or has a kink.
 bool Finder::is_corner(int v, bool at_kinks) const {
   const std::vector<std::size_t>& edges = sharp_at_.at(v);
   if (edges.size() != 2 || !at_kinks) return edges.size() != 2;
@@ -181,7 +181,7 @@ bool Finder::is_corner(int v, bool at_kinks) const {
     const int other = edges_[e].a == v ? edges_[e].b : edges_[e].a;
     return Vec3((at(other) - at(v)).normalized());
   };
-  return direction(edges[0]).dot(direction(edges[1])) > -std::cos(params_.sure_turn * kRadians);
+  return direction(edges[0]).dot(direction(edges[1])) > -std::cos(params_.kink_turn * kRadians);
 }
 
 void Finder::trace(bool ends_at_kinks) {

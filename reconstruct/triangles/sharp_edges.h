@@ -11,6 +11,8 @@ namespace umtet {
 struct SharpEdgeParams {
   double sure_turn = 50;   ///< degrees: from this turn on an edge is sharp
   double least_turn = 15;  ///< degrees: below this turn an edge is smooth
+  /// Degrees: a curve that turns more at a vertex has a kink there, which is a corner. A circle of 11 chords turns by 33.
+  double kink_turn = 35;
   /// Curves with a loose end are noise if they are shorter than this share of the diagonal, ...
   double least_length = .04;
   std::size_t fewest_edges = 6;  ///< ... or if they have fewer edges

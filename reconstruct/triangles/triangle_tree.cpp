@@ -51,23 +51,40 @@ double along_ray(const Vec3& x, const Vec3& d, const std::array<Vec3, 3>& t) {
 
 }  // namespace
 
-Vec3 closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+Vec3 closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c, Vec3* weights) {
+  const auto at = [&](double of_b, double of_c) {
+    if (weights) *weights = {1 - of_b - of_c, of_b, of_c};
+  };
   const Vec3 ab = b - a, ac = c - a, ax = x - a;
   const double d1 = ab.dot(ax), d2 = ac.dot(ax);
+  at(0, 0);
   if (d1 <= 0 && d2 <= 0) return a;
   const Vec3 bx = x - b;
   const double d3 = ab.dot(bx), d4 = ac.dot(bx);
+  at(1, 0);
   if (d3 >= 0 && d4 <= d3) return b;
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    at(d1 / (d1 - d3), 0);
+    return a + d1 / (d1 - d3) * ab;
+  }
   const Vec3 cx = x - c;
   const double d5 = ab.dot(cx), d6 = ac.dot(cx);
+  at(0, 1);
   if (d6 >= 0 && d5 <= d6) return c;
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    at(0, d2 / (d2 - d6));
+    return a + d2 / (d2 - d6) * ac;
+  }
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    if (weights) *weights = {0, 1 - t, t};
+    return b + t * (c - b);
+  }
   const double whole = va + vb + vc;
+  at(vb / whole, vc / whole);
   return a + vb / whole * ab + vc / whole * ac;
 }
 
@@ -126,25 +143,33 @@ std::optional<TriangleHit> TriangleTree::first_on_ray(const Vec3& x, const Vec3&
 }
 
 std::optional<TriangleHit> TriangleTree::nearest(const Vec3& x, double within, const Counts& counts) const {
+  return nearest_of(x, within, [&](std::uint32_t face) { return counts(face); });
+}
+
+template <class F>
+std::optional<TriangleHit> TriangleTree::nearest_of(const Vec3& x, double within, const F& counts) const {
   TriangleHit hit;
   double least2 = within * within;
   bool found = false;
-  std::array<std::uint32_t, kDeepestSampleTree> stack;
+  struct Waiting {
+    std::uint32_t node;
+    double off2;
+  };
+  std::array<Waiting, kDeepestSampleTree> stack;
   std::size_t depth = 0;
-  stack[depth++] = 0;
+  stack[depth++] = {0, off_box2(x, nodes_[0].low, nodes_[0].high)};
   while (depth > 0) {
-    const std::uint32_t number = stack[--depth];
-    const Node& node = nodes_[number];
-    if (off_box2(x, node.low, node.high) > least2) continue;
-    if (node.right > 0) {
-      // The nearer child is looked at first: it is on top.
-      const std::uint32_t left = number + 1, right = node.right;
-      const bool left_is_nearer =
-          off_box2(x, nodes_[left].low, nodes_[left].high) <= off_box2(x, nodes_[right].low, nodes_[right].high);
-      stack[depth++] = left_is_nearer ? right : left;
-      stack[depth++] = left_is_nearer ? left : right;
-      continue;
+    Waiting next = stack[--depth];
+    if (next.off2 > least2) continue;
+    while (nodes_[next.node].right > 0) {
+      const std::uint32_t l = next.node + 1, r = nodes_[next.node].right;
+      Waiting left{l, off_box2(x, nodes_[l].low, nodes_[l].high)}, right{r, off_box2(x, nodes_[r].low, nodes_[r].high)};
+      if (right.off2 < left.off2) std::swap(left, right);
+      if (!(right.off2 > least2)) stack[depth++] = right;
+      next = left;
     }
+    if (next.off2 > least2) continue;
+    const Node& node = nodes_[next.node];
     for (std::uint32_t i = node.first; i < node.last; ++i) {
       const auto& [a, b, c] = triangles_[i].at;
       const Vec3 y = closest_on_triangle(x, a, b, c);
@@ -159,6 +184,10 @@ std::optional<TriangleHit> TriangleTree::nearest(const Vec3& x, double within, c
   if (!found) return std::nullopt;
   hit.distance = std::sqrt(least2);
   return hit;
+}
+
+TriangleHit TriangleTree::nearest(const Vec3& x) const {
+  return *nearest_of(x, std::numeric_limits<double>::infinity(), [](std::uint32_t) { return true; });
 }
 
 }  // namespace umtet

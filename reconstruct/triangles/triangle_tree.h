@@ -13,7 +13,8 @@
 namespace umtet {
 
 /// Closest point of the triangle abc to x [Ericson2005].
-Vec3 closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
+/// @param weights  receives the barycentric coordinates of the point, exactly zero on a side; may be null
+Vec3 closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c, Vec3* weights = nullptr);
 
 /// Triangle found by a query.
 struct TriangleHit {
@@ -35,6 +36,8 @@ class TriangleTree {
   /// The first selected triangle on the ray from x along the unit vector d, farther than `from` and up to `to`.
   std::optional<TriangleHit> first_on_ray(const Vec3& x, const Vec3& d, double from, double to,
                                           const Counts& counts) const;
+  /// The nearest triangle of all.
+  TriangleHit nearest(const Vec3& x) const;
   /// The nearest selected triangle within the distance `within`.
   std::optional<TriangleHit> nearest(const Vec3& x, double within, const Counts& counts) const;
 
@@ -47,6 +50,9 @@ class TriangleTree {
   struct Node : SampleTreeNode {
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   };
+  template <class F>
+  std::optional<TriangleHit> nearest_of(const Vec3& x, double within, const F& counts) const;
+
   std::vector<Corners> triangles_;
   std::vector<Node> nodes_;  ///< parents before children
 };

@@ -164,6 +164,15 @@ class MeshTest(unittest.TestCase):
         self.assertEqual(len(m.background_tet), len(m.tets))
         self.assertTrue((np.diff(m.background_tet) > 0).all())
 
+    def test_a_formula_with_sharp_edges_has_them_in_its_mesh(self):
+        m = umtet.mesh("max(x^2+y^2-1,abs(z)-1)", box=(-1.5, -1.5, -1.5, 1.5, 1.5, 1.5), h=.2)
+        features = m.certificate["features"]
+        self.assertEqual((features["curves"], features["corners"], features["patches"]), (2, 0, 3))
+        self.assertEqual(features["missed_curves"], 0)
+        self.assertEqual(m.certificate["verdict"], "pass")
+        rim = m.points[np.isclose(np.hypot(m.points[:, 0], m.points[:, 1]), 1) & np.isclose(abs(m.points[:, 2]), 1)]
+        self.assertGreater(len(rim), 40)
+
     def test_certificate_has_the_keys_of_the_file(self):
         if "UMTET_PROGRAM" not in os.environ:
             self.skipTest("no program")

@@ -13,6 +13,7 @@
 
 #include "body/option_names.h"
 #include "mesh/expression/expression.h"
+#include "mesh/features/formula_domain.h"
 #include "mesh/io/surface_files.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/output/export_case.h"
@@ -142,6 +143,7 @@ TEST(Umtet, ThePatchesOfASurfaceAreThoseOfTheExport) {
   request.source = file;
   request.parameters.set("cloud.file", file.string(), ParamSource::Flag, "test");
   request.parameters.set("mesh.h", ".08", ParamSource::Flag, "test");
+  request.parameters.set("reconstruct.edges", "off", ParamSource::Flag, "test");  // the facade rounds them
   Progress quiet(ProgressMode::None, Verbosity::Quiet);
   run_case(request, quiet);
   Options options;
@@ -273,6 +275,37 @@ TEST(Umtet, PatchesThatCannotBeAreRefusedBeforeTheMesh) {
   EXPECT_THROW(mesh_body(Expression("x^2 + y^2 + z^2 - 1"), options), std::invalid_argument);
   options.patches = {.angle = 181};
   EXPECT_THROW(mesh_body(Expression("x^2 + y^2 + z^2 - 1"), options), std::invalid_argument);
+}
+
+TEST(Umtet, ABodyWithSharpEdgesHasThemAndItsCertificateIsThatOfTheProgram) {
+  const Folder folder;
+  const std::string can = "max(x^2+y^2-1,abs(z)-1)";
+  Options options;
+  options.box = Box(Vec3::Constant(-1.5), Vec3::Constant(1.5));
+  options.body.mesh.h = .25;
+  const Mesh mesh = mesh_body(domain_of_formula(can), options);
+  EXPECT_EQ(mesh.verdict.word(), "pass");
+  ASSERT_EQ(mesh.patches.size(), 3U);
+  for (int p = 0; p < 3; ++p) EXPECT_EQ(mesh.patches[p].name, "patch_" + std::to_string(p + 1));
+  ASSERT_EQ(mesh.curves.size(), 2U);
+  for (const std::vector<int>& curve : mesh.curves) {
+    ASSERT_GT(curve.size(), 10U);
+    EXPECT_EQ(curve.front(), curve.back());
+    for (const int v : curve) {
+      EXPECT_NEAR(mesh.points[v].head<2>().norm(), 1, 1e-9);
+      EXPECT_NEAR(std::abs(mesh.points[v].z()), 1, 1e-9);
+    }
+  }
+  RunRequest request;
+  request.from = Stage::Mesh;
+  request.parameters.set("mesh.implicit", can, ParamSource::Flag, "test");
+  request.parameters.set("mesh.box", "-1.5,-1.5,-1.5,1.5,1.5,1.5", ParamSource::Flag, "test");
+  request.parameters.set("mesh.h", ".25", ParamSource::Flag, "test");
+  EXPECT_EQ(measured_by(mesh).dump(1), measured_by_program(folder.path, request).dump(1));
+  Progress quiet(ProgressMode::None, Verbosity::Quiet);
+  const std::vector<fs::path> exported =
+      export_case(CasePaths{folder.path / "case"}, {"mesh"}, request.parameters, quiet);
+  EXPECT_EQ(patches_of(mesh), patches_of_medit(exported.front()));
 }
 
 TEST(Umtet, WhatHasNoMeshIsAnErrorWithEvidence) {

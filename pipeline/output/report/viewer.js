@@ -191,12 +191,23 @@
   }));
   const samples = once(() => cloud.geometry.setAttribute("position", new THREE.BufferAttribute(places("points"), 3)));
   if (info.n_points_shown === 0) $("cloud-row").hidden = true;
-  for (const part of [surface, inside, cloud]) {
+  // Sharp edges of the body, as pairs of ends, slightly in front of the surface.
+  const ends = has("curves") ? places("curves") : new Float32Array(0);
+  const curves = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.ShaderMaterial({
+    vertexShader: `
+      void main() {
+        vec4 p = modelViewMatrix * vec4(position, 1.0);
+        p.xyz *= 0.998;
+        gl_Position = projectionMatrix * p;
+      }`,
+    fragmentShader: "void main() { gl_FragColor = vec4(0.75, 0.05, 0.1, 1.0); }",
+  }));
+  for (const part of [surface, inside, cloud, curves]) {
     part.frustumCulled = false;
     world.add(part);
   }
   surface.renderOrder = 1;
-  cloud.renderOrder = 2;
+  cloud.renderOrder = curves.renderOrder = 2;
 
   const setGeometry = (part, soup) => {
     part.geometry.dispose();
@@ -245,6 +256,16 @@
     surface.material.uniforms.opacity.value = glass;
     surface.material.uniforms.edges.value = $("edges").checked && !worst ? 1 : 0;
     inside.material.uniforms.edges.value = $("edges").checked ? 1 : 0;
+    const shown = [];
+    for (let i = 0; i < ends.length; i += 6) {
+      const middle = cut && (ends[i + cut.axis] + ends[i + 3 + cut.axis]) / 2;
+      if (!cut || cut.sign * middle <= cut.at) shown.push(...ends.subarray(i, i + 6));
+    }
+    curves.geometry.dispose();
+    curves.geometry = new THREE.BufferGeometry();
+    curves.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(shown), 3));
+    curves.visible = shown.length > 0;
+    state.curves = shown.length / 6;
     cloud.visible = $("cloud").checked && info.n_points_shown > 0;
     if (cloud.visible) samples();
     $("worst-count").value = nWorst;

@@ -78,6 +78,30 @@ TEST_F(Boxes, HaveThePatchesOfLabels) {
   EXPECT_THROW(require_patches(cloud, {}), UsageError);
 }
 
+TEST_F(Boxes, HaveThePatchesOfABodyWithSharpEdgesAndTheirCurves) {
+  const std::vector<char> none = faces_at(one, 0), third = faces_at(one, 4);
+  std::vector<int> of_body;
+  for (std::size_t f = 0; f < none.size(); ++f) of_body.push_back(none[f] ? -1 : third[f] ? 2 : 0);
+  const auto divided_by = [&](const PatchOptions& options, const std::vector<int>& patches) {
+    return divide_boundary(one.nodes, one.triangles(), {}, {}, options, patches);
+  };
+  const BoundaryDivision division = divided_by({}, of_body);
+  EXPECT_EQ(names(division), (Names{"rest 2", "patch_1 3", "patch_3 4"}));
+  for (std::size_t f = 0; f < none.size(); ++f) EXPECT_EQ(division.face_patch[f], none[f] ? 0 : third[f] ? 2 : 1);
+  ASSERT_EQ(division.curves.size(), 2u);
+  for (int c = 0; c < 2; ++c) {
+    const MeshCurve& curve = division.curves[c];
+    EXPECT_EQ(curve.part.name, c == 0 ? "curve_1" : "curve_2");
+    EXPECT_EQ(curve.part.number, c + 1);
+    EXPECT_EQ(curve.edges.size(), 16u) << "around a side of 4 x 4 squares";
+    for (const auto& [v, w] : curve.edges) EXPECT_EQ(one.nodes[v].x() + one.nodes[w].x(), 8 * c);
+  }
+  const BoundaryDivision by_angle = divided_by({.angle = 30}, of_body);
+  EXPECT_EQ(by_angle.patches.size(), 6u);
+  EXPECT_TRUE(by_angle.curves.empty());
+  EXPECT_EQ(names(divided_by({}, std::vector<int>(none.size(), 3))), Names{"boundary 2"});
+}
+
 TEST_F(Boxes, LoseFacesToHoles) {
   const BoundaryDivision sides = divided(one, {.angle = 30});
   const std::vector<char> holes = faces_at(one, 0);

@@ -139,7 +139,7 @@ TEST_P(PiecewiseMeshes, HaveEveryCurveAndGoodTetsInAnyPosition) {
     expect_curves_are_covered(made);
     expect_vertices_and_faces_on_their_strata(body, made);
 
-    const FeatureMeasures features = measure_features(body.domain, made, kH);
+    const FeatureMeasures features = measure_features(body.domain, made);
     EXPECT_EQ(features.n_missed_corners + features.n_missed_curves + features.n_faces_without_patch, 0U);
     EXPECT_EQ(features.missed_length, 0);
     EXPECT_NEAR(features.length, body.curve_length, .01 * body.curve_length);
@@ -214,7 +214,7 @@ TEST(PiecewiseMesh, CurvesThatCannotBeEmbeddedAreNamedAndTheMeshIsValid) {
   const PiecewiseMesh made = make_piecewise_mesh(domain, background_of(cube, kH));
   ASSERT_EQ(made.status, UmStatus::Success);
   EXPECT_FALSE(made.defects.empty());
-  const FeatureMeasures features = measure_features(domain, made, kH);
+  const FeatureMeasures features = measure_features(domain, made);
   EXPECT_GT(features.n_missed_curves, 0U);
   EXPECT_GT(features.missed_length, 0);
   EXPECT_LT(features.missed_length, features.length);

@@ -40,9 +40,10 @@ class Reference(unittest.TestCase):
         self.assertEqual(sorted(set(found) - self.words), [], f"{where}: not in docs/reference.md")
 
     def test_documents_and_fields_are_named(self):
-        duck, lens, cube = str(self.at / "duck"), str(self.at / "lens"), str(self.at / "cube")
+        duck, lens, cube, can = (str(self.at / name) for name in ("duck", "lens", "cube", "can"))
         calls = (["run", str(REPOSITORY / "data/clouds/duck.ply"), "-o", duck, "--h", ".12", "--order", "2"],
                  ["mesh", "--implicit", "x^2+y^2+(z/0.2)^2-1", "--box=-1.9,-1.9,-1.2,1.9,1.9,1.2", "--h", ".2", "-o", lens],
+                 ["mesh", "--implicit", "max(x^2+y^2-1,abs(z)-1)", "--box=-1.9,-1.9,-1.9,1.9,1.9,1.9", "--h", ".3", "-o", can],
                  ["run", str(REPOSITORY / "tests/corpus/files/triangles_obj/cube.obj"), "-o", cube, "--h", ".08"])
         for call in calls:
             document = json.loads(run(*call, "--json"))
@@ -51,7 +52,8 @@ class Reference(unittest.TestCase):
             self.expect(keys(json.loads((case / "certificate.json").read_text()), {"seconds"}), "certificate.json")
             self.expect(json.loads((case / "3-mesh/record.json").read_text()), "record.json")
             self.expect((case / "3-mesh/quality.csv").read_text().split("\n")[0].split(",")[:4], "quality.csv")
-        for file in (self.at / "duck/3-mesh/mesh.vtu", self.at / "lens/3-mesh/too_thin.vtp"):
+        for file in (self.at / "duck/3-mesh/mesh.vtu", self.at / "lens/3-mesh/too_thin.vtp",
+                     self.at / "can/3-mesh/features.vtp"):
             fields = {name.decode() for name in re.findall(rb'Name="(\w+)"', file.read_bytes())}
             self.expect(fields - {"connectivity", "offsets", "types", "Points"}, file.name)
         check = json.loads(run("check", duck + "/3-mesh/mesh.vtu", "--json"))

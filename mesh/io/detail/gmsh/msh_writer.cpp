@@ -20,6 +20,9 @@ struct ElementKind {
 };
 
 ElementKind tet_kind(const SolverMesh& mesh) { return {mesh.nodes_per_tet == 4 ? 4 : 11, mesh.nodes_per_tet}; }
+// Curves are of meshes with 4 nodes per tet.
+constexpr ElementKind kLine = {1, 2};
+
 ElementKind face_kind(const SolverMesh& mesh) { return {mesh.nodes_per_tet == 4 ? 2 : 9, mesh.nodes_per_face()}; }
 
 class MshWriter {
@@ -28,6 +31,7 @@ class MshWriter {
       : mesh_(mesh), binary_(encoding == MshEncoding::Binary), file_(path), faces_of_(mesh.patches.size()) {
     for (std::size_t f = 0; f < mesh.n_faces(); ++f) faces_of_[mesh.face_patch[f]].push_back(static_cast<int>(f));
     for (const std::vector<int>& faces : faces_of_) n_patches_ += !faces.empty();
+    for (const MeshCurve& curve : mesh.curves) n_lines_ += curve.edges.size();
   }
   void version22();
   void version41();
@@ -52,6 +56,7 @@ class MshWriter {
   CheckedFile file_;
   std::vector<std::vector<int>> faces_of_;  ///< by patch
   std::uint64_t n_patches_ = 0;             ///< that have faces
+  std::size_t n_lines_ = 0;                 ///< edges of curves
   std::int32_t id_ = 0;                     ///< of the last element
 };
 
@@ -79,7 +84,9 @@ void MshWriter::put_nodes(const int* ids, const ElementKind& kind) {
 void MshWriter::head(const char* version) {
   file_.text("$MeshFormat\n").text(version).text(binary_ ? " 1 8\n" : " 0 8\n");
   if (binary_) file_.raw(std::int32_t{1}).text("\n");  // tells the reader our byte order
-  file_.text("$EndMeshFormat\n$PhysicalNames\n").number(mesh_.patches.size() + 1).text("\n");
+  file_.text("$EndMeshFormat\n$PhysicalNames\n").number(mesh_.curves.size() + mesh_.patches.size() + 1).text("\n");
+  for (const auto& [part, edges] : mesh_.curves)
+    file_.text("1 ").number(part.number).text(" \"").text(part.name).text("\"\n");
   for (const MeshPart& patch : mesh_.patches) {
     file_.text("2 ").number(patch.number).text(" \"").text(patch.name).text("\"\n");
   }
@@ -105,7 +112,11 @@ void MshWriter::version22() {
     put(static_cast<std::int32_t>(i) + 1, " ");
     put_point(mesh_.nodes[i], "\n");
   }
-  file_.text("$EndNodes\n$Elements\n").number(mesh_.n_tets() + mesh_.n_faces()).text("\n");
+  file_.text("$EndNodes\n$Elements\n").number(mesh_.n_tets() + mesh_.n_faces() + n_lines_).text("\n");
+  block22(kLine, n_lines_);
+  for (const auto& [part, edges] : mesh_.curves) {
+    for (const std::array<int, 2>& edge : edges) element22(kLine, part.number, edge.data());
+  }
   block22(face_kind(mesh_), mesh_.n_faces());
   for (std::size_t p = 0; p < faces_of_.size(); ++p) {
     for (const int f : faces_of_[p]) element22(face_kind(mesh_), mesh_.patches[p].number, mesh_.face(f).data());
@@ -138,9 +149,14 @@ void MshWriter::entities41() {
   };
   file_.text("$Entities\n");
   put(std::uint64_t{0}, " ");
-  put(std::uint64_t{0}, " ");
+  put(std::uint64_t{mesh_.curves.size()}, " ");
   put(n_patches_, " ");
   put(std::uint64_t{1}, "\n");
+  for (const MeshCurve& curve : mesh_.curves) {
+    Eigen::AlignedBox3d box;
+    for (const int v : curve_nodes(curve)) box.extend(mesh_.nodes[v]);
+    if (!box.isEmpty()) put_entity(curve.part.number, box, 0);
+  }
   for (std::size_t p = 0; p < faces_of_.size(); ++p) {
     Eigen::AlignedBox3d box;
     for (const int f : faces_of_[p]) {
@@ -164,17 +180,27 @@ void MshWriter::block41(int dimension, int entity, int third, std::size_t n) {
 }
 
 void MshWriter::nodes41() {
-  // A node belongs to the entity of least dimension it lies on; on a border of patches to the first.
-  const std::size_t n_patches = mesh_.patches.size();
-  std::vector<std::vector<int>> nodes_of = patch_nodes(mesh_);
-  nodes_of.emplace_back();
-  std::vector<char> taken(mesh_.nodes.size(), 0);
-  for (std::size_t p = 0; p < n_patches; ++p) {
-    std::erase_if(nodes_of[p], [&](int i) { return taken[i] != 0; });
-    for (const int i : nodes_of[p]) taken[i] = 1;
+  // A node belongs to the entity of least dimension it lies on; on a border of equal ones to the first.
+  struct Entity {
+    int dimension, number;
+  };
+  std::vector<Entity> entities;
+  std::vector<std::vector<int>> nodes_of;
+  for (const MeshCurve& curve : mesh_.curves) {
+    entities.push_back({1, curve.part.number});
+    nodes_of.push_back(curve_nodes(curve));
   }
+  for (std::vector<int>& nodes : patch_nodes(mesh_)) nodes_of.push_back(std::move(nodes));
+  for (const MeshPart& patch : mesh_.patches) entities.push_back({2, patch.number});
+  std::vector<char> taken(mesh_.nodes.size(), 0);
+  for (std::vector<int>& nodes : nodes_of) {
+    std::erase_if(nodes, [&](int i) { return taken[i] != 0; });
+    for (const int i : nodes) taken[i] = 1;
+  }
+  entities.push_back({3, mesh_.body.number});
+  nodes_of.emplace_back();
   for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (!taken[i]) nodes_of[n_patches].push_back(static_cast<int>(i));
+    if (!taken[i]) nodes_of.back().push_back(static_cast<int>(i));
   }
   std::uint64_t n_blocks = 0;
   for (const std::vector<int>& ids : nodes_of) n_blocks += !ids.empty();
@@ -183,22 +209,29 @@ void MshWriter::nodes41() {
   put(std::uint64_t{mesh_.nodes.size()}, " ");
   put(std::uint64_t{mesh_.nodes.empty() ? 0u : 1u}, " ");
   put(std::uint64_t{mesh_.nodes.size()}, "\n");
-  for (std::size_t p = 0; p <= n_patches; ++p) {
-    if (nodes_of[p].empty()) continue;
-    block41(p < n_patches ? 2 : 3, p < n_patches ? mesh_.patches[p].number : mesh_.body.number, 0, nodes_of[p].size());
-    for (const int i : nodes_of[p]) put(static_cast<std::uint64_t>(i) + 1, "\n");
-    for (const int i : nodes_of[p]) put_point(mesh_.nodes[i], "\n");
+  for (std::size_t e = 0; e < entities.size(); ++e) {
+    if (nodes_of[e].empty()) continue;
+    block41(entities[e].dimension, entities[e].number, 0, nodes_of[e].size());
+    for (const int i : nodes_of[e]) put(static_cast<std::uint64_t>(i) + 1, "\n");
+    for (const int i : nodes_of[e]) put_point(mesh_.nodes[i], "\n");
   }
   file_.text("$EndNodes\n");
 }
 
 void MshWriter::elements41() {
-  const std::uint64_t n = mesh_.n_tets() + mesh_.n_faces();
+  const std::uint64_t n = mesh_.n_tets() + mesh_.n_faces() + n_lines_;
   file_.text("$Elements\n");
-  put(n_patches_ + (mesh_.n_tets() > 0 ? 1 : 0), " ");
+  put(mesh_.curves.size() + n_patches_ + (mesh_.n_tets() > 0 ? 1 : 0), " ");
   put(n, " ");
   put(std::uint64_t{n > 0}, " ");
   put(n, "\n");
+  for (const auto& [part, edges] : mesh_.curves) {
+    block41(1, part.number, kLine.type, edges.size());
+    for (const std::array<int, 2>& edge : edges) {
+      put(static_cast<std::uint64_t>(++id_), " ");
+      put_nodes<std::uint64_t>(edge.data(), kLine);
+    }
+  }
   const ElementKind face = face_kind(mesh_), tet = tet_kind(mesh_);
   for (std::size_t p = 0; p < faces_of_.size(); ++p) {
     if (faces_of_[p].empty()) continue;
@@ -227,7 +260,9 @@ void MshWriter::version41() {
 
 void check(const SolverMesh& mesh) {
   require_consistent(mesh);
-  require_msh_tags(mesh.n_tets() + mesh.n_faces());
+  std::size_t n_lines = 0;
+  for (const MeshCurve& curve : mesh.curves) n_lines += curve.edges.size();
+  require_msh_tags(mesh.n_tets() + mesh.n_faces() + n_lines);
 }
 
 }  // namespace

@@ -147,6 +147,8 @@ void write_cdb(const std::filesystem::path& path, const SolverMesh& mesh) {
   std::vector<std::string> parts = {mesh.body.name};
   for (const MeshPart& patch : mesh.patches) parts.push_back(patch.name);
   if (mesh.patches.size() > 1) parts.emplace_back(kWholeBoundary);
+  const std::size_t n_before_curves = parts.size();
+  for (const MeshCurve& curve : mesh.curves) parts.push_back(curve.part.name);
   const std::vector<std::string> names = component_names(parts);
   CheckedFile file(path);
   write_header(file, mesh, parts, names);
@@ -157,7 +159,9 @@ void write_cdb(const std::filesystem::path& path, const SolverMesh& mesh) {
   }
   const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
   for (std::size_t p = 0; p < nodes.size(); ++p) write_node_component(file, names[p + 1], nodes[p]);
-  if (mesh.patches.size() > 1) write_node_component(file, names.back(), boundary_nodes(mesh));
+  if (mesh.patches.size() > 1) write_node_component(file, names[n_before_curves - 1], boundary_nodes(mesh));
+  for (std::size_t c = 0; c < mesh.curves.size(); ++c)
+    write_node_component(file, names[n_before_curves + c], curve_nodes(mesh.curves[c]));
   file.text("FINISH\n");
   file.close();
 }

@@ -79,6 +79,7 @@ void write_feb(const std::filesystem::path& path, const SolverMesh& mesh) {
   const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) write_node_set(file, mesh.patches[p].name, nodes[p]);
   if (mesh.patches.size() > 1) write_node_set(file, kWholeBoundary, boundary_nodes(mesh));
+  for (const MeshCurve& curve : mesh.curves) write_node_set(file, curve.part.name, curve_nodes(curve));
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     write_surface_set(file, mesh, mesh.patches[p].name, static_cast<int>(p));
   }

@@ -64,6 +64,7 @@ void write_inp(const std::filesystem::path& path, const SolverMesh& mesh) {
     write_node_set(file, kWholeBoundary, boundary_nodes(mesh));
     write_surface_set(file, mesh, kWholeBoundary, -1);
   }
+  for (const MeshCurve& curve : mesh.curves) write_node_set(file, curve.part.name, curve_nodes(curve));
   file.close();
 }
 

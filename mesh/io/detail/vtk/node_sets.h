@@ -4,7 +4,8 @@
 
 namespace umtet::detail {
 
-/// All node data, with 0/1 arrays for every patch and for all patches, which replace data with the same name.
+/// All node data, with 0/1 arrays for every patch, for all patches and for every curve, which replace data with the
+/// same name.
 inline std::map<std::string, FieldValues> with_node_sets(const SolverMesh& mesh) {
   std::map<std::string, FieldValues> arrays = mesh.point_data;
   arrays.insert(mesh.boundary_data.begin(), mesh.boundary_data.end());
@@ -16,6 +17,7 @@ inline std::map<std::string, FieldValues> with_node_sets(const SolverMesh& mesh)
   const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
   for (std::size_t p = 0; p < nodes.size(); ++p) add(mesh.patches[p].name, nodes[p]);
   add(kWholeBoundary, boundary_nodes(mesh));
+  for (const MeshCurve& curve : mesh.curves) add(curve.part.name, curve_nodes(curve));
   return arrays;
 }
 

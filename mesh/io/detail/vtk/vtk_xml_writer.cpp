@@ -12,6 +12,7 @@
 #include "common/vtk_xml/appended_writer.h"
 #include "mesh/io/checked_file.h"
 #include "mesh/io/detail/vtk/node_sets.h"
+#include "mesh/io/polylines.h"
 #include "mesh/io/pvtu.h"
 #include "mesh/io/solver_files.h"
 #include "mesh/io/tet_mesh_io.h"
@@ -201,6 +202,29 @@ void write_boundary_vtu(const std::filesystem::path& path, const SolverMesh& mes
                     static_cast<std::uint8_t>(linear ? VTK_TRIANGLE : VTK_QUADRATIC_TRIANGLE)};
   write_grid(path, mesh.nodes, faces, detail::with_node_sets(mesh), {{"patch", detail::patch_numbers(mesh)}},
              mesh.patches);
+}
+
+void write_polylines(const std::filesystem::path& path, const std::vector<Vec3>& points,
+                     const std::vector<std::vector<int>>& lines, const Arrays& point_data, const Arrays& line_data) {
+  check_sizes(point_data, points.size());
+  check_sizes(line_data, lines.size());
+  std::vector<std::int64_t> connectivity, offsets;
+  for (const std::vector<int>& line : lines) {
+    for (const int v : line) {
+      if (v < 0 || static_cast<std::size_t>(v) >= points.size())
+        throw std::invalid_argument("a line has a point that does not exist");
+      connectivity.push_back(v);
+    }
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+  }
+  AppendedWriter out;
+  out.begin("PolyData").text(detail::piece_begin(points.size(), "NumberOfLines", lines.size()));
+  add_data(out, "PointData", point_data);
+  add_data(out, "CellData", line_data);
+  add_points(out, points);
+  out.text("<Lines>\n");
+  out.array("connectivity", std::move(connectivity)).array("offsets", std::move(offsets));
+  write_to(path, out.text("</Lines>\n"));
 }
 
 void write_vtp(const std::filesystem::path& path, const std::vector<Vec3>& points, const Arrays& point_data) {

@@ -1,0 +1,49 @@
+#include "body/edges/edged_body.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "body/edges/triangle_domain.h"
+
+namespace umtet {
+namespace {
+
+// Of the diagonal, and of h: the background has to have two edges and more around the body.
+constexpr double kMargin = .1, kEdgesAround = 5;
+
+Box box_of(const TriangleMesh& mesh) {
+  Box box;
+  for (const Triangle& t : mesh.F)
+    for (const int v : t) box.extend(mesh.V[v]);
+  return box;
+}
+
+}  // namespace
+
+std::shared_ptr<const PiecewiseBody> edged_body(const GivenTriangles& triangles) {
+  const bool is_whole = triangles.body.is_closed && triangles.body.is_manifold && triangles.is_whole;
+  if (!is_whole || triangles.edges.curves.empty()) return nullptr;
+  std::optional<TriangleDomain> made = triangle_domain(triangles.whole, triangles.edges);
+  if (!made) return nullptr;
+  return std::make_shared<const PiecewiseBody>(PiecewiseBody{std::move(made->domain), std::move(made->graph)});
+}
+
+Domain edged_domain(std::shared_ptr<const GivenTriangles> triangles, std::shared_ptr<const PiecewiseBody> body,
+                    OrientedPointCloud cloud, const Vec3& shift, const std::optional<Box>& box, double h) {
+  Domain domain;
+  domain.shift = shift;
+  const Box of_body = box_of(triangles->mesh);
+  domain.diagonal = of_body.diagonal().norm();
+  const Vec3 margin = Vec3::Constant(std::max(kMargin * domain.diagonal, kEdgesAround * h));
+  domain.box = box ? Box(box->min() - shift, box->max() - shift) : Box(of_body.min() - margin, of_body.max() + margin);
+  domain.cloud = std::move(cloud);
+  for (Vec3& x : domain.cloud.points) x -= shift;
+  domain.triangles = std::move(triangles);
+  domain.noise = 0;
+  set_body(domain, std::move(body));
+  return domain;
+}
+
+Vec3 middle_of(const TriangleMesh& mesh) { return box_of(mesh).center(); }
+
+}  // namespace umtet

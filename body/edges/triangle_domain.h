@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+
+#include "mesh/core/piecewise_domain.h"
+#include "mesh/features/feature_graph.h"
+#include "reconstruct/triangles/sharp_edges.h"
+#include "reconstruct/triangles/triangle_mesh.h"
+
+namespace umtet {
+
+/// A piecewise smooth domain with its curves and corners.
+struct TriangleDomain {
+  PiecewiseDomain domain;
+  FeatureGraph graph;
+};
+
+/// The domain inside of some triangles, with one function for each smooth patch.
+///
+/// A patch whose vertices lie on a plane, sphere, cylinder or cone within 1e-6 of the diagonal, and its facets within
+/// 2.5e-4, is that surface (patch_primitive.h); any other patch is its triangles (patch_surface.h). psi(x) is the function of the patch of the triangle nearest to x. Where the nearest point is on a
+/// sharp edge, psi is the maximum of the functions of its two patches if the edge is convex, else the minimum; where it
+/// is a vertex of a curve, psi is the distance from it, with the sign of the angle-weighted normal of all triangles
+/// around [Baerentzen2005].
+///
+/// The curves are those of `edges`, as polylines; between two surfaces that are no triangles and meet at 15 degrees or
+/// more, they are their common zero sets. Curves that return to a corner are divided in three.
+/// @param mesh   triangles that face outward
+/// @param edges  find_sharp_edges() of these triangles
+/// @return none if the surface is no closed manifold: each edge has two triangles, in opposite directions
+std::optional<TriangleDomain> triangle_domain(const TriangleMesh& mesh, const SharpEdges& edges);
+
+}  // namespace umtet

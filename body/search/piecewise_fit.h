@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+
+#include "body/options.h"
+#include "body/piecewise_body.h"
+#include "common/context.h"
+#include "mesh/background/background_mesh.h"
+#include "mesh/features/piecewise_mesh.h"
+#include "mesh/submesh/chosen_submesh.h"
+#include "mesh/submesh/um_result.h"
+
+namespace umtet {
+
+/// \throw UsageError  an option that meshes of bodies with sharp edges do not have: a background of the caller,
+///                    walls, Algorithm 1 of the paper, or curved edges
+void require_piecewise(const BodyOptions& options);
+
+/// The parameters of make_piecewise_mesh() for these options.
+PiecewiseMeshParams piecewise_params(const MeshOptions& options);
+
+/// A mesh of a piecewise smooth body in the form of universal_mesh(), and its curves and patches.
+struct PiecewiseFit {
+  UmResult result;
+  std::shared_ptr<PiecewiseMesh> features;  ///< its vertices and faces are those of the result, which has its tets
+};
+
+/// fit_piecewise_mesh() of the body. \throw Cancelled
+PiecewiseFit fit_piecewise(const PiecewiseBody& body, const BackgroundMesh& background, ChosenSubmesh chosen,
+                           const MeshOptions& options, const Context& context = {});
+
+}  // namespace umtet

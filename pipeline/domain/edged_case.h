@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "body/given_triangles.h"
+#include "body/piecewise_body.h"
+#include "pipeline/case/parameters.h"
+#include "pipeline/case/record.h"
+
+namespace umtet {
+
+/// Triangles with sharp edges and the functions of their patches.
+struct EdgedTriangles {
+  std::shared_ptr<const GivenTriangles> triangles;  ///< working coordinates
+  std::shared_ptr<const PiecewiseBody> body;        ///< working coordinates; null if there is no sharp edge to keep
+  Vec3 shift = Vec3::Zero();                        ///< origin of the working coordinates, model coordinates
+};
+
+/// Finds the sharp edges of triangles. \param mesh  model coordinates
+EdgedTriangles edged_triangles(TriangleMesh mesh, const Vec3& shift, const Parameters& parameters);
+
+/// Returns whether the level-set stage kept the sharp edges of triangles instead of a fit.
+bool has_edges(const StageRecord& level_set);
+
+/// File name of the curves in the folder of the level-set stage.
+inline constexpr const char* kFeatureFile = "features.vtp";
+
+}  // namespace umtet
