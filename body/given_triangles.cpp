@@ -49,8 +49,9 @@ TriangleMesh whole_triangles(const TriangleMesh& mesh) {
 std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift, double sure_turn) {
   for (Vec3& x : mesh.V) x -= shift;
   SurfaceDistance distance(mesh.V, mesh.F);
-  const TriangleBody body = measure_body(mesh);
-  const bool is_whole = body.is_closed && body.is_manifold && is_on_boundary(mesh);
+  const bool is_on = is_on_boundary(mesh);
+  const TriangleBody body = measure_body(is_on ? TriangleMesh{mesh.V, mesh.F} : mesh);
+  const bool is_whole = is_on && body.is_closed && body.is_manifold;
   TriangleMesh whole = is_whole ? TriangleMesh{mesh.V, mesh.F} : whole_triangles(mesh);
   remove_slivers(whole, kSliver * diagonal_of(whole));
   SharpEdges edges = find_sharp_edges(whole, {.sure_turn = sure_turn});

@@ -178,8 +178,7 @@ Reconstruction reconstruct_file(const std::filesystem::path& file, const Setting
   if (const std::string problem = problem_of_columns(parameters.cloud().columns); !problem.empty())
     throw UsageError("columns: " + problem);
   return interruptible(progress, threads, [file, parameters](const Watch& watch) {
-    require_regular_file(file);
-    ScanSource source = read_source(file, parameters, polls_of(watch));
+    ScanSource source = read_source(*open_source(file), parameters, polls_of(watch));
     return reconstruct(std::move(source.cloud), parameters, watch);
   });
 }

@@ -1,10 +1,12 @@
 #include "umtet/umtet.h"
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 
 #include "body/edges/edged_body.h"
 #include "body/errors.h"
+#include "body/fidelity/closed_holes.h"
 #include "body/given_triangles.h"
 #include "body/option_names.h"
 #include "body/piecewise_body.h"
@@ -46,7 +48,41 @@ std::vector<int> labels_of(const OrientedPointCloud& cloud, const std::vector<Ve
   return vote_labels(cloud, centroids, normals);
 }
 
+/// The faces of which all vertices are in walls of the box; empty without walls.
+std::vector<char> faces_at_walls(const Mesh& mesh, const std::vector<Triangle>& faces) {
+  if (mesh.walls.empty()) return {};
+  std::vector<char> at_wall(mesh.points.size(), 0), found;
+  for (const Triangle& f : mesh.walls) {
+    for (const int v : f) at_wall[v] = 1;
+  }
+  for (const Triangle& f : faces) {
+    found.push_back(std::all_of(f.begin(), f.end(), [&](int v) { return at_wall[v]; }) ? 1 : 0);
+  }
+  return found;
+}
+
+/// Divides the boundary of the mesh.
+/// @param of_body  patch of each boundary face in a body with sharp edges; empty for a smooth body
+/// @param mesh     in the coordinates of the domain
+void set_patches(const Domain& domain, const Options& options, const std::vector<int>& of_body, Mesh& mesh) {
+  std::vector<Triangle> faces = mesh.boundary;
+  faces.insert(faces.end(), mesh.walls.begin(), mesh.walls.end());
+  BoundaryDivision division =
+      divide_boundary(mesh.points, faces, faces_at_walls(mesh, faces), domain.cloud, options.patches, of_body);
+  const std::optional<SupportReport>& support = mesh.measures.domain.support;
+  if (support && support->n_closed_holes > 0) {
+    const ClosedHoles holes = find_closed_holes(domain, mesh.points, mesh.boundary, options.context);
+    std::vector<char> in_holes(faces.size(), 0);
+    std::transform(holes.of_face.begin(), holes.of_face.end(), in_holes.begin(), [](int hole) { return hole >= 0; });
+    take_holes(in_holes, division);
+  }
+  mesh.patches = std::move(division.patches);
+  mesh.face_patch = std::move(division.face_patch);
+  mesh.notices.insert(mesh.notices.end(), division.notices.begin(), division.notices.end());
+}
+
 Mesh mesh_of(Domain domain, const Options& options) {
+  require_patches(domain.cloud, options.patches);
   MeshAttempt best = best_mesh(domain, options.body, options.max_memory, options.context);
   if (!best.made()) refuse(best, domain.shift);
   UmResult& result = best.result;
@@ -58,11 +94,9 @@ Mesh mesh_of(Domain domain, const Options& options) {
             .measures = std::move(best.measured),
             .verdict = {},
             .notices = std::move(domain.notices)};
-  if (best.features) {
-    mesh.patches = best.features->face_patch;
-    mesh.curves = best.features->chains;
-  }
+  if (best.features) mesh.curves = best.features->chains;
   mesh.labels = labels_of(domain.cloud, mesh.points, mesh.boundary);
+  set_patches(domain, options, best.features ? best.features->face_patch : std::vector<int>(), mesh);
   for (Vec3& x : mesh.points) x += domain.shift;
   if (best.second) {
     mesh.curved = std::move(best.second->mesh);

@@ -11,6 +11,7 @@
 #include "body/fidelity/mesh_measures.h"
 #include "body/fidelity/verdict.h"
 #include "body/options.h"
+#include "body/patches/boundary_division.h"
 #include "body/scan/scan_reports.h"
 #include "body/shared_function.h"
 #include "common/context.h"
@@ -39,6 +40,8 @@ struct Options {
   /// default_spacing(). With NormalsOf::Given no triangle is turned over. With Closing::Smooth and Closing::None the
   /// fit closes plane openings.
   BodySampleParams triangles = {};
+  /// Division of the boundary into patches.
+  PatchOptions patches = {};
   /// Box that the background must cover; empty: the box of psi.
   std::optional<Box> box = {};
   double max_memory = std::numeric_limits<double>::infinity();  ///< bytes of memory that the mesh may use
@@ -51,11 +54,15 @@ struct Mesh {
   std::vector<Tet> tets;           ///< positive orientation
   std::vector<Triangle> boundary;  ///< faces on psi = 0, counter-clockwise from outside
   std::vector<int> labels = {};    ///< label of each boundary face, if the input has labels (vote_labels())
-  /// For a piecewise smooth body: the patch of each boundary face (-1: none), and the vertices of each sharp edge in
-  /// order (of a closed one with the first at the end again; empty: the mesh lacks it).
-  std::vector<int> patches = {};
+  std::vector<Triangle> walls;     ///< faces in the walls of the box, with MeshOptions::box_walls
+  /// Patches of the boundary and the walls, with the numbers that `umtet export` writes: divide_boundary(), and the
+  /// closed holes of a scan by take_holes().
+  std::vector<MeshPart> patches = {};
+  /// For each face of `boundary`, then for each face of `walls`: its index in `patches`.
+  std::vector<int> face_patch = {};
+  /// For a piecewise smooth body: the vertices of each sharp edge in order (of a closed one with the first at the end
+  /// again; empty: the mesh lacks it).
   std::vector<std::vector<int>> curves = {};
-  std::vector<Triangle> walls;                  ///< faces in the walls of the box, with MeshOptions::box_walls
   std::optional<QuadraticTetMesh> curved = {};  ///< the mesh with mid-sides, with MeshOptions::order = 2
   /// Edge length of the background; the least edge length if it is graded.
   double h = 0;
@@ -94,6 +101,7 @@ FittedBody fit_body(TriangleMesh triangles, const Options& options = {});
 ///
 /// \throw TooThin            there is no mesh, as the body is thinner than h can show
 /// \throw MeshingImpossible  there is no mesh for another reason
+/// \throw std::invalid_argument  an angle of options.patches is out of range
 /// \throw ResourceLimit, UsageError, Cancelled
 Mesh mesh_body(const FittedBody& body, const Options& options = {});
 

@@ -242,6 +242,23 @@ int guessed_handles(const std::vector<Triangle>& faces, const ClosedHoles& found
   return std::max(0, closed_genus(faces, all) - closed_genus(faces, rest));
 }
 
+/// Distances of the vertices of faces to the nearest sample; -1 at all other vertices.
+std::vector<double> support_of(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                               const Context& context) {
+  std::vector<double> support(V.size(), -1);
+  for (const Triangle& f : faces) {
+    for (const int v : f) support[v] = 0;
+  }
+  std::vector<int> vertices;
+  std::vector<Vec3> places;
+  for (std::size_t v = 0; v < V.size(); ++v) {
+    if (support[v] == 0) vertices.push_back(static_cast<int>(v)), places.push_back(V[v]);
+  }
+  const std::vector<double> distance = distances_to_samples(domain.cloud.points, places, context);
+  for (std::size_t k = 0; k < vertices.size(); ++k) support[vertices[k]] = distance[k];
+  return support;
+}
+
 }  // namespace
 
 ClosedHoles find_closed_holes(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
@@ -271,19 +288,14 @@ ClosedHoles find_closed_holes(const std::vector<Vec3>& V, const std::vector<Tria
   return found;
 }
 
+ClosedHoles find_closed_holes(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                              const Context& context) {
+  return find_closed_holes(V, faces, support_of(domain, V, faces, context), support_radius(domain), context);
+}
+
 SupportReport support_report(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                              const Context& context) {
-  std::vector<double> support(V.size(), -1);
-  for (const Triangle& f : faces) {
-    for (const int v : f) support[v] = 0;
-  }
-  std::vector<int> vertices;
-  std::vector<Vec3> places;
-  for (std::size_t v = 0; v < V.size(); ++v) {
-    if (support[v] == 0) vertices.push_back(static_cast<int>(v)), places.push_back(V[v]);
-  }
-  const std::vector<double> distance = distances_to_samples(domain.cloud.points, places, context);
-  for (std::size_t k = 0; k < vertices.size(); ++k) support[vertices[k]] = distance[k];
+  const std::vector<double> support = support_of(domain, V, faces, context);
   SupportReport report;
   report.radius = support_radius(domain);
   report.unsupported_area_fraction = unsupported_area_fraction(V, faces, support, report.radius);

@@ -40,6 +40,13 @@ struct ClosedHoles {
 ClosedHoles find_closed_holes(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                               const std::vector<double>& support, double radius, const Context& context = {});
 
+/// Finds the holes of a mesh of the domain.
+/// @param V      vertices, working coordinates
+/// @param faces  boundary faces on psi = 0
+/// \pre domain.has_samples() \throw Cancelled
+ClosedHoles find_closed_holes(const Domain& domain, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                              const Context& context = {});
+
 /// Returns the support report of a mesh of the domain for its certificate. Centres are in model coordinates.
 /// @param V      vertices, working coordinates
 /// @param faces  boundary faces on psi = 0

@@ -24,7 +24,16 @@ gzFile of(void* gzip) { return static_cast<gzFile>(gzip); }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
 
 ByteStream::ByteStream(const std::filesystem::path& file, Refusal refusal) : name_(file.string()), refusal_(refusal) {
-  const int descriptor = ::open(name_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe does not keep us waiting
+  take_over(::open(name_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe does not keep us waiting
+}
+
+ByteStream::ByteStream(int descriptor, const std::filesystem::path& file, Refusal refusal)
+    : name_(file.string()), refusal_(refusal) {
+  ::lseek(descriptor, 0, SEEK_SET);  // a pipe is refused below
+  take_over(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
+}
+
+void ByteStream::take_over(int descriptor) {
   struct stat status = {};
   if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
     const int error = errno;

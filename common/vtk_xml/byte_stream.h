@@ -20,6 +20,9 @@ class ByteStream {
 
   /// \throw std::system_error if the file cannot be opened; the exception of `refusal` if it is not a regular file
   ByteStream(const std::filesystem::path& file, Refusal refusal);
+  /// Reads a file that is open, from its beginning, and leaves it open.
+  /// @param file  its path, for messages and unpack_rest()
+  ByteStream(int descriptor, const std::filesystem::path& file, Refusal refusal);
   ~ByteStream();
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
@@ -57,6 +60,8 @@ class ByteStream {
   static constexpr std::size_t kHead = 4096, kLongestLine = 1 << 16, kLast = 64;
 
  private:
+  /// Takes the descriptor, and closes it if it throws.
+  void take_over(int descriptor);
   std::size_t fill(char* to, std::size_t n);
   bool more();
   bool has_more() { return next_ < buffer_.size() || more(); }

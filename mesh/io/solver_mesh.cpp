@@ -81,6 +81,16 @@ std::vector<int> SolverMesh::faces() const {
   return ids;
 }
 
+std::vector<Triangle> SolverMesh::triangles() const {
+  std::vector<Triangle> corners;
+  corners.reserve(n_faces());
+  for (std::size_t f = 0; f < n_faces(); ++f) {
+    const std::array<int, 6> of_face = face(f);
+    corners.push_back({of_face[0], of_face[1], of_face[2]});
+  }
+  return corners;
+}
+
 SolverMesh solver_mesh(std::vector<Vec3> nodes, int nodes_per_tet, std::vector<int> tets) {
   if (nodes_per_tet != 4 && nodes_per_tet != 10) {
     throw std::invalid_argument(fmt::format("nodes_per_tet = {}: must be 4 or 10", nodes_per_tet));

@@ -10,21 +10,9 @@
 #include "mesh/core/quadratic_tet_mesh.h"
 #include "mesh/core/tet_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
+#include "mesh/patches/named_part.h"
 
 namespace umtet {
-
-/// A named part of a mesh. Formats without names use the number: Gmsh's physical group, MEDIT's reference, Nastran's
-/// property.
-struct MeshPart {
-  std::string name;  ///< a letter, then letters, digits, '_', '-' and '.'; see problem_of_name()
-  int number = 0;    ///< >= 1
-};
-
-/// A curve of edges in the boundary, between two patches. Its number counts among curves alone.
-struct MeshCurve {
-  MeshPart part;
-  std::vector<std::array<int, 2>> edges;  ///< pairs of corners
-};
 
 /// A mesh for solver files: tets with 4 or 10 nodes, and their boundary faces in named patches. Every boundary face is
 /// in one patch and every tet in the body. The nodes of a patch are its node set; nodes on a border are in several.
@@ -54,6 +42,7 @@ struct SolverMesh {
   std::array<int, 6> face(std::size_t f) const;
   /// The same for all faces, one after the other.
   std::vector<int> faces() const;
+  std::vector<Triangle> triangles() const;  ///< the corners of all faces
 };
 
 /// Makes a solver mesh and finds its boundary faces, which form one patch "boundary", number 2.
@@ -82,9 +71,6 @@ std::vector<int> curve_nodes(const MeshCurve& curve);
 void set_curves(SolverMesh& mesh, std::vector<MeshCurve> curves);
 /// The nodes of all patches, ascending.
 std::vector<int> boundary_nodes(const SolverMesh& mesh);
-/// The name of all patches together if there are several; no patch may then have this name.
-inline constexpr const char* kWholeBoundary = "boundary";
-
 /// Checks a mesh. \throw std::invalid_argument for sizes or indices that contradict each other
 void require_consistent(const SolverMesh& mesh);
 

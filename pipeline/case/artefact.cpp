@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -11,7 +10,10 @@
 #include <exception>
 #include <memory>
 #include <system_error>
+#include <utility>
 #include <vector>
+
+#include "reconstruct/io/input_file.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
@@ -92,6 +94,25 @@ std::string digits(XXH128_hash_t hash) {
   return text;
 }
 
+/// Returns the stamp of some bytes and of those that follow.
+/// @param read  reads up to n bytes from a position on; 0: the end
+template <class Read>
+FileStamp stamp_of(std::string_view head, const Read& read) {
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
+  if (!state) throw std::bad_alloc();
+  XXH3_128bits_reset(state.get());
+  FileStamp result;
+  const auto add = [&](const char* bytes, std::size_t n) {
+    XXH3_128bits_update(state.get(), bytes, n);
+    result.size += n;
+  };
+  add(head.data(), head.size());
+  std::vector<char> buffer(1 << 20);
+  while (const std::size_t n = read(result.size, buffer.data(), buffer.size())) add(buffer.data(), n);
+  result.xxh3 = digits(XXH3_128bits_digest(state.get()));
+  return result;
+}
+
 /// Removes the temporary file unless it has been renamed.
 struct TemporaryFile {
   fs::path path;
@@ -144,29 +165,29 @@ std::string checksum(std::string_view text) { return digits(XXH3_128bits(text.da
 
 FileStamp stamp(const fs::path& file) {
   Descriptor in = open_regular(file);
-  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
-  if (!state) throw std::bad_alloc();
-  XXH3_128bits_reset(state.get());
-  std::vector<char> buffer(1 << 20);
-  FileStamp result;
-  while (const std::size_t n = in.read(buffer.data(), buffer.size())) {
-    XXH3_128bits_update(state.get(), buffer.data(), n);
-    result.size += n;
-  }
-  result.xxh3 = digits(XXH3_128bits_digest(state.get()));
-  return result;
+  return stamp_of({}, [&in](std::size_t, char* to, std::size_t n) { return in.read(to, n); });
+}
+
+FileStamps::Identity FileStamps::identity_of(const struct stat& status) {
+  return {status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size), status.st_mtim.tv_sec,
+          status.st_mtim.tv_nsec};
 }
 
 std::optional<FileStamps::Identity> FileStamps::identity_of(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return std::nullopt;
-  return Identity{status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size), status.st_mtim.tv_sec,
-                  status.st_mtim.tv_nsec};
+  return identity_of(status);
 }
 
-bool FileStamps::knows(const fs::path& file) const {
-  const std::optional<Identity> identity = identity_of(file);
-  return identity && known_.contains(*identity);
+bool FileStamps::knows(const InputFile& file) const { return known_.contains(identity_of(file.status())); }
+
+FileStamp FileStamps::of(const InputFile& file) {
+  const Identity identity = identity_of(file.status());
+  if (const auto known = known_.find(identity); known != known_.end()) return known->second;
+  FileStamp stamp =
+      stamp_of(file.head(), [&file](std::size_t at, char* to, std::size_t n) { return file.read(at, to, n); });
+  ++n_read_[file.path()];
+  return known_[identity] = std::move(stamp);
 }
 
 std::vector<FileStamp> FileStamps::of(const std::vector<fs::path>& files) {

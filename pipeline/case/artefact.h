@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/stat.h>
+
 #include <compare>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +13,8 @@
 #include <vector>
 
 namespace umtet {
+
+class InputFile;
 
 /// Size and XXH3-128 of a file. They detect damage, not manipulation.
 struct FileStamp {
@@ -32,11 +36,14 @@ class FileStamps {
  public:
   /// \throw the exceptions of stamp()
   FileStamp of(const std::filesystem::path& file) { return of(std::vector{file}).front(); }
+  /// Returns the stamp of the file as it was opened: of the bytes of its head(), and of those after them.
+  /// \throw std::system_error
+  FileStamp of(const InputFile& file);
   /// Returns the stamps of several files, which all threads read in parallel. \throw the exception of stamp() for
   /// the first file that fails
   std::vector<FileStamp> of(const std::vector<std::filesystem::path>& files);
-  /// Returns whether the file has a stamp and has not changed since.
-  bool knows(const std::filesystem::path& file) const;
+  /// Returns whether the file has a stamp, which was made from the same state as the file had when it was opened.
+  bool knows(const InputFile& file) const;
   /// Returns how often each file was read, by its path at that time.
   const std::map<std::filesystem::path, int>& n_read() const { return n_read_; }
 
@@ -47,6 +54,7 @@ class FileStamps {
     std::int64_t seconds = 0, nanoseconds = 0;  ///< time of the last change
     auto operator<=>(const Identity&) const = default;
   };
+  static Identity identity_of(const struct stat& status);
   static std::optional<Identity> identity_of(const std::filesystem::path& file);
 
   std::map<Identity, FileStamp> known_;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
+#include <utility>
 
 #include "body/fidelity/accepted_defects.h"
 #include "pipeline/case/case_folder.h"
@@ -13,6 +15,7 @@
 #include "pipeline/output/boundary_patches.h"
 #include "pipeline/output/export_case.h"
 #include "reconstruct/io/grid_io.h"
+#include "reconstruct/io/input_file.h"
 #include "reconstruct/io/point_cloud_io.h"
 
 namespace umtet {
@@ -153,7 +156,9 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
   } else {
     const std::string name = app.get_name();
     request.case_folder = in.output;
-    if (!in.input.empty() && is_grid_file(in.input)) {
+    std::shared_ptr<const InputFile> input;
+    if (fs::is_regular_file(in.input)) input = std::make_shared<InputFile>(in.input);
+    if (input && is_grid_file(*input)) {
       take_image(in.input, request);
     } else if (first == Stage::Mesh) {
       if (!has_own_psi(parameters.mesh()))
@@ -163,6 +168,7 @@ Command make_stages(const CLI::App& app, const CommandInputs& in, Stage first, S
       if (parameters.cloud().file.empty() && request.from == Stage::Cloud)
         throw UsageError(name + ": CLOUD is missing");
       if (request.from == Stage::Cloud) take_cloud(request);
+      if (input && request.source == input->path()) request.input = std::move(input);
     }
     if (in.output.empty()) {
       const std::string& grid = parameters.mesh().level_set;

@@ -31,8 +31,10 @@
 #include "pipeline/reports/certificate_summary.h"
 #include "pipeline/run/evolve.h"
 #include "pipeline/run/run.h"
+#include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stale_mesh.h"
 #include "reconstruct/io/grid_io.h"
+#include "reconstruct/io/input_file.h"
 
 namespace umtet {
 namespace {
@@ -138,12 +140,13 @@ Output Execution::operator()(const InspectCommand& command) const {
     progress.clear();
     return {ExitCode::Success, inspection_text(found), {{"inspection", to_json(found)}}};
   }
-  if (is_grid_file(command.cloud)) {
+  const std::shared_ptr<const InputFile> input = open_source(command.cloud);
+  if (is_grid_file(*input)) {
     const ImageInspection found = inspect_image(command.cloud, command.parameters, progress);
     progress.clear();
     return {ExitCode::Success, inspection_text(found), {{"inspection", to_json(found)}}};
   }
-  const CloudInspection found = inspect_cloud(command.cloud, command.parameters, progress);
+  const CloudInspection found = inspect_cloud(*input, command.parameters, progress);
   progress.clear();
   return {ExitCode::Success, inspection_text(found), {{"inspection", to_json(found)}}};
 }

@@ -29,8 +29,12 @@ SolverMesh for_solver(const MeshObject& m, const MeshFile& content) {
   if (!m.certificate) return made;
   MarkedFaces marked = marked_faces(made, content, m.certificate->measured.domain.support);
   mark_patches(m.domain, made, m.result.final, m.h, marked);
-  if (!marked.of_body.empty()) divide_boundary(made, marked, {}, {}, [](const std::string&) {});
-  take_holes(made, marked.in_holes, [](const std::string&) {});
+  const Warn nobody = [](const std::string&) {};
+  if (marked.of_body.empty()) {
+    take_holes(made, marked.in_holes, nobody);
+  } else {
+    divide_boundary(made, marked, {}, {}, nobody);
+  }
   return made;
 }
 

@@ -37,19 +37,13 @@ MarkedFaces marked_faces(const SolverMesh& mesh, const MeshFile& file, const std
 void mark_patches(const Domain& domain, const SolverMesh& mesh, const std::vector<Vec3>& V, double h,
                   MarkedFaces& marked);
 
-/// Moves the faces of holes to the patch "closed_holes". Its number follows all existing numbers of patches and body,
-/// which do not change. A patch that loses all its faces is removed, and `warn` reports it. A patch "boundary" becomes
-/// "boundary_1", because "boundary" names all patches together if there are several. Nothing changes without holes.
+/// Moves the faces of holes to the patch "closed_holes", as take_holes() of body does. Nothing changes without holes.
 void take_holes(SolverMesh& mesh, const std::vector<char>& in_holes, const Warn& warn);
 
-/// Divides the boundary faces into patches. If the cloud has labels, they decide (by votes of the nearest samples; then
-/// islands below output.label_min_area are removed); otherwise output.patch_planar or else output.patch_angle if set;
-/// otherwise the patches of a body with sharp edges, patch_N, and the edges between them as curves, curve_N; otherwise
-/// connected components. A positive label is the number of its patch; others get the numbers after the
-/// largest label. A patch without a name is patch_LABEL, region_N, plane_N (and rest) or boundary_N. `warn` reports
-/// labels without faces, and a boundary without flat parts. Faces at walls are separate patches: "walls", or by angle
-/// or plane walls_1, walls_2 ...
-/// Then calls take_holes().
+/// Divides the boundary faces into patches by divide_boundary() of body: by the labels of the cloud; otherwise by
+/// output.patch_planar or else output.patch_angle if set; otherwise into the patches of a body with sharp edges, with
+/// the edges between them as curves; otherwise into connected components. `warn` reports labels without faces, and a
+/// boundary without flat parts. Then calls take_holes().
 /// \throw UsageError  the exceptions of parse_label_names(), a name for a label that the cloud does not have, or a name
 ///   that is reserved for walls or holes
 /// @param names_of_file  names of labels 1, 2 ... without a name in output.label_names

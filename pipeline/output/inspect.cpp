@@ -126,10 +126,10 @@ RunPrediction prediction_of(CloudFile scan, const fs::path& file, const CloudSur
 
 }  // namespace
 
-CloudInspection inspect_cloud(const fs::path& file, const Parameters& parameters, Progress& progress) {
+CloudInspection inspect_cloud(const InputFile& input, const Parameters& parameters, Progress& progress) {
   progress.report("inspect", "read", 0);
-  require_regular_file(file);
-  ScanSource source = read_source(file, parameters);
+  const fs::path& file = input.path();
+  ScanSource source = read_source(input, parameters);
   const CloudFile& scan = source.cloud;
   progress.report("inspect", "survey", .3);
   CloudSurvey s = [&] {

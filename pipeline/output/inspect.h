@@ -33,7 +33,7 @@ struct CloudInspection {
 /// Inspects a cloud. Changes and writes nothing.
 /// @param parameters  parameters of the predicted run, also used to read the file
 /// \throw CloudRefused, UsageError, std::system_error
-CloudInspection inspect_cloud(const std::filesystem::path& file, const Parameters& parameters, Progress& progress);
+CloudInspection inspect_cloud(const InputFile& input, const Parameters& parameters, Progress& progress);
 
 /// Returns the answer of `umtet inspect --json`.
 Json to_json(const CloudInspection& inspection);

@@ -13,7 +13,7 @@
 #include "body/pieces/zero_set_choice.h"
 #include "common/indices_where.h"
 #include "common/polled_loops.h"
-#include "mesh/io/patches.h"
+#include "mesh/patches/patches.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/sample_fields.h"
@@ -132,7 +132,7 @@ void SceneMaker::take_faces(const SolverMesh& divided) {
 void SceneMaker::take_patches(const SolverMesh& divided) {
   std::vector<double> area(divided.patches.size(), 0);
   std::vector<std::size_t> n(divided.patches.size(), 0);
-  const FaceGeometry geometry = face_geometry(divided);
+  const FaceGeometry geometry = face_geometry(divided.nodes, divided.triangles());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     area[divided.face_patch[f]] += geometry.area[f];
     ++n[divided.face_patch[f]];

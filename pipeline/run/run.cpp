@@ -30,6 +30,7 @@ class CaseRun {
       : request_(request),
         progress_(progress),
         paths_{request.case_folder, {}, request.stamps},
+        input_(request.input),
         parameters_(request.parameters),
         context_{paths_, parameters_, progress, request.threads, handover_, request.ranks} {}
 
@@ -52,7 +53,9 @@ class CaseRun {
   void smooth_edges();
   void tell_changes(const Parameters& former);
   bool is_kept(Stage stage) const;
-  StageState state_of(Stage stage) const;
+  fs::path source() const;
+  const InputFile& input();
+  StageState state_of(Stage stage);
   bool is_fine_enough(Stage stage, const StageRecord& record) const;
   bool lacks_parts(Stage stage, const StageState& state) const;
   bool must_run(Stage stage, const StageState& state) const;
@@ -66,6 +69,7 @@ class CaseRun {
   const RunRequest& request_;
   Progress& progress_;
   CasePaths paths_;
+  std::shared_ptr<const InputFile> input_;  ///< input(), once it is open
   Parameters
       parameters_;  ///< requested parameters; for finished stages outside the request, the parameters that made them
   Handover handover_;
@@ -160,19 +164,28 @@ void CaseRun::sample_for_h() {
   const char* key = keys::cloud::sample_spacing;
   if (parameters_.source(key) == ParamSource::Derived) parameters_.drop(key);
   if (parameters_.source(key) > ParamSource::Case || parameters_.cloud().sample_spacing > 0) return;
-  const fs::path source = request_.source.empty() ? fs::path(parameters_.cloud().file) : request_.source;
-  if (!(parameters_.mesh().h > 0) || !fs::is_regular_file(source) || !is_of_triangles(source, parameters_)) return;
+  if (!(parameters_.mesh().h > 0) || !fs::is_regular_file(source()) || !is_of_triangles(input(), parameters_)) return;
   parameters_.drop(key);
   parameters_.set(key, fmt::format("{}", parameters_.mesh().h / kSamplesAnEdge), ParamSource::Derived, "for --h");
 }
 
-StageState CaseRun::state_of(Stage stage) const {
+/// Returns the cloud of the request, else that of the case; empty if there is none.
+fs::path CaseRun::source() const {
+  return request_.source.empty() ? fs::path(parameters_.cloud().file) : request_.source;
+}
+
+/// Returns source(), which the first call opens. \throw as open_source()
+const InputFile& CaseRun::input() {
+  if (!input_) input_ = open_source(source());
+  return *input_;
+}
+
+StageState CaseRun::state_of(Stage stage) {
   std::optional<std::vector<RecordedFile>> inputs;
   // A stage that is taken as it is may have been made from other input.
   if (stage >= request_.from) {
     if (stage != Stage::Cloud) inputs = recorded_inputs(paths_, stage, parameters_);
-    if (stage == Stage::Cloud && !request_.source.empty())
-      inputs = source_inputs(request_.source, parameters_, *paths_.stamps);
+    if (stage == Stage::Cloud && !request_.source.empty()) inputs = source_inputs(input(), parameters_, *paths_.stamps);
   }
   return inspect_stage(paths_, stage, parameters_.section(section_of(stage)), inputs);
 }
@@ -254,10 +267,8 @@ void CaseRun::make(Stage stage) {
   set_work_at_hand(to_string(stage));
   try {
     if (stage == Stage::Cloud) {
-      fs::path source = request_.source;
-      if (source.empty()) source = parameters_.cloud().file;
-      if (source.empty()) throw UsageError("no cloud given");
-      run_cloud_stage(context_, source);
+      if (source().empty()) throw UsageError("no cloud given");
+      run_cloud_stage(context_, input());
     } else if (stage == Stage::LevelSet) {
       run_level_set_stage(context_);
     } else {

@@ -12,6 +12,7 @@
 #include "pipeline/case/record.h"
 #include "pipeline/meshing/part_mesher.h"
 #include "pipeline/reports/certificate_report.h"
+#include "reconstruct/io/input_file.h"
 
 namespace umtet {
 
@@ -19,6 +20,8 @@ namespace umtet {
 struct RunRequest {
   std::filesystem::path case_folder;
   std::filesystem::path source;  ///< the cloud; empty: the case has its own cloud, or there is a formula
+  /// `source` if it is open already, else null: the run opens it.
+  std::shared_ptr<const InputFile> input;
   Parameters parameters;
   Stage from = Stage::Cloud, until = Stage::Mesh;
   bool fresh = false;   ///< take only the input of the case from former calls

@@ -9,13 +9,14 @@
 #include "pipeline/domain/body_options.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
+#include "reconstruct/io/input_file.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/io/triangle_mesh_io.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
 
-void run_cloud_stage(const StageContext& context, const fs::path& source) {
+void run_cloud_stage(const StageContext& context, const InputFile& source) {
   const auto start = std::chrono::steady_clock::now();
   context.progress.report("cloud", "read", 0);
   // Files are stamped before they are parsed: if a file changes meanwhile, the next run finds another stamp and reads
@@ -23,7 +24,8 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   const std::vector<RecordedFile> inputs = source_inputs(source, context.parameters, *context.paths.stamps);
   ScanSource scan = read_source(source, context.parameters, {.cancelled = until_interrupted().cancelled});
   context.progress.report("cloud", "prepare", .2);
-  PreparedCloud prepared = prepare_merged(std::move(scan.cloud), source.string(), body_options(context.parameters));
+  PreparedCloud prepared =
+      prepare_merged(std::move(scan.cloud), source.path().string(), body_options(context.parameters));
   if (scan.triangles) add_triangles(*scan.triangles, prepared.report);
   stop_if_interrupted();
   for (const std::string& notice : texts_of(prepared.report.notices, as_flag)) context.progress.say("cloud: " + notice);
@@ -49,7 +51,7 @@ void run_cloud_stage(const StageContext& context, const fs::path& source) {
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   StageRun run = run_of_stage(seconds.count(), context.threads);
-  run.source = fs::absolute(source).string();
+  run.source = fs::absolute(source.path()).string();
   write_record(context.paths,
                {Stage::Cloud,
                 context.parameters.section("cloud"),

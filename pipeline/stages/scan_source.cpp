@@ -88,8 +88,6 @@ std::vector<Message> notices_of(const TrianglesReport& t, const TriangleFileRepo
   return list;
 }
 
-}  // namespace
-
 void require_regular_file(const fs::path& file) {
   const fs::file_status status = fs::status(file);
   if (fs::is_directory(status)) throw CloudRefused(file.string() + ": a folder; give the file of the cloud");
@@ -98,35 +96,39 @@ void require_regular_file(const fs::path& file) {
   }
 }
 
-std::vector<RecordedFile> source_inputs(const fs::path& source, const Parameters& parameters, FileStamps& stamps) {
-  const auto input = [&stamps](const char* name, const fs::path& file) {
-    require_regular_file(file);
-    return RecordedFile{name, stamps.of(file)};
-  };
-  require_regular_file(source);
+}  // namespace
+
+std::shared_ptr<const InputFile> open_source(const fs::path& file) {
+  require_regular_file(file);
+  return std::make_shared<InputFile>(file);
+}
+
+std::vector<RecordedFile> source_inputs(const InputFile& source, const Parameters& parameters, FileStamps& stamps) {
   // Gigabytes that are not a scan are not read for their checksum.
   if (!stamps.knows(source)) {
     is_of_triangles(source, parameters) ? check_triangles_head(source)
                                         : check_scan_head(source, parameters.cloud().columns);
   }
-  std::vector<RecordedFile> inputs = {input("source", source)};
+  std::vector<RecordedFile> inputs = {{"source", stamps.of(source)}};
   const std::string& viewpoints = parameters.cloud().orient_from;
-  if (!viewpoints.empty() && is_too_large_a_text(viewpoints))
+  if (viewpoints.empty()) return inputs;
+  if (is_too_large_a_text(viewpoints))
     throw CloudRefused(viewpoints + ": too large for a file of viewpoints with lines x y z");
-  if (!viewpoints.empty()) inputs.push_back(input("viewpoints", viewpoints));
+  require_regular_file(viewpoints);
+  inputs.push_back({"viewpoints", stamps.of(fs::path(viewpoints))});
   return inputs;
 }
 
-bool is_of_triangles(const fs::path& source, const Parameters& parameters) {
+bool is_of_triangles(const InputFile& source, const Parameters& parameters) {
   return holds_triangles(source, parameters.cloud().as_points ? PlyFaces::Ignored : PlyFaces::Surface);
 }
 
-ScanSource read_source(const fs::path& source, const Parameters& parameters, const Context& context) {
+ScanSource read_source(const InputFile& source, const Parameters& parameters, const Context& context) {
   const std::string& columns = parameters.cloud().columns;
   if (!is_of_triangles(source, parameters)) return {read_scan(source, columns), {}};
   if (!columns.empty())
     throw CloudRefused(
-        {source.string() + ": ", Option{keys::cloud::columns}, " applies to text tables, not to triangles"});
+        {source.path().string() + ": ", Option{keys::cloud::columns}, " applies to text tables, not to triangles"});
   TriangleFile file = read_triangles(source);
   const NormalsOf how = parameters.cloud().normals;
   const Touching touching = parameters.cloud().touching;
@@ -144,12 +146,12 @@ ScanSource read_source(const fs::path& source, const Parameters& parameters, con
                           .touching = touching},
                          context);
     } catch (const std::invalid_argument& e) {
-      throw CloudRefused(fmt::format("{}: {}", source.string(), e.what()));
+      throw CloudRefused(fmt::format("{}: {}", source.path().string(), e.what()));
     }
   }();
   if (body.cloud.points.size() < kFewestSurveyed)
     throw CloudRefused(
-        fmt::format("{}: {} of {} samples lie on the boundary of a body, {} are needed", source.string(),
+        fmt::format("{}: {} of {} samples lie on the boundary of a body, {} are needed", source.path().string(),
                     body.cloud.points.size(), body.report.n_samples, kFewestSurveyed),
         {{Change::Lower, Option{keys::cloud::sample_spacing}},
          {Change::Give, {Option{keys::cloud::normals}, "given"}, "if the sides of the triangles are right"}});

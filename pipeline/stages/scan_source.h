@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
 #include "pipeline/reports/stage_reports.h"
+#include "reconstruct/io/input_file.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/io/triangle_mesh_io.h"
 
@@ -28,23 +30,23 @@ struct ScanSource {
   std::optional<SampledTriangles> triangles;
 };
 
-/// \throw CloudRefused  a device, a pipe or a folder: their size is unknown
-void require_regular_file(const std::filesystem::path& file);
+/// Opens a scan file.
+/// \throw CloudRefused  a device, a pipe or a folder: their size is unknown; std::system_error
+std::shared_ptr<const InputFile> open_source(const std::filesystem::path& file);
 
 /// Returns the files that 1-cloud reads: the user's cloud, and the viewpoints of cloud.orient_from.
-/// \throw CloudRefused (not a regular file), std::system_error
-std::vector<RecordedFile> source_inputs(const std::filesystem::path& source, const Parameters& parameters,
-                                        FileStamps& stamps);
+/// \throw CloudRefused  the beginning of the cloud is not that of a scan, or the viewpoints are not a regular file or
+///   too large; std::system_error
+std::vector<RecordedFile> source_inputs(const InputFile& source, const Parameters& parameters, FileStamps& stamps);
 
-/// Returns whether the file contains triangles: STL, OBJ, OFF, and PLY with faces unless cloud.as_points. \throw
-/// std::system_error
-bool is_of_triangles(const std::filesystem::path& source, const Parameters& parameters);
+/// Returns whether the file contains triangles: STL, OBJ, OFF, and PLY with faces unless cloud.as_points.
+bool is_of_triangles(const InputFile& source, const Parameters& parameters);
 
 /// Reads points as they are, and samples triangles with a spacing of at most cloud.sample_spacing. Samples have no
 /// normals for cloud.normals = estimate, and the sides of the triangles for cloud.normals = given.
 /// \throw CloudRefused  the exceptions of the readers, or triangles that do not bound a body; std::system_error;
 ///   Cancelled
-ScanSource read_source(const std::filesystem::path& source, const Parameters& parameters, const Context& context = {});
+ScanSource read_source(const InputFile& source, const Parameters& parameters, const Context& context = {});
 
 /// Adds the report on triangles to the report of their samples, notices first.
 void add_triangles(const SampledTriangles& triangles, CloudReport& report);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "pipeline/case/case_folder.h"
@@ -11,6 +10,8 @@
 #include "pipeline/meshing/part_mesher.h"
 
 namespace umtet {
+
+class InputFile;
 
 /// The arguments of every stage. A stage computes first and touches the case only when it has something to write; it
 /// writes to paths.folder(), which is beside a finished folder if there is one.
@@ -25,7 +26,7 @@ struct StageContext {
 
 /// 1-cloud: reads the user's file, checks it, and writes cloud.ply (double precision, original coordinates).
 /// \throw CloudRefused, std::system_error; then the case is unchanged
-void run_cloud_stage(const StageContext&, const std::filesystem::path& source);
+void run_cloud_stage(const StageContext&, const InputFile& source);
 
 /// 2-level-set: fits psi to cloud.ply and writes level_set.vti. A cloud far from the origin is fitted in coordinates
 /// shifted by LevelSetReport::shift. \throw SolveError, Interrupted, ArtefactDamaged, std::system_error

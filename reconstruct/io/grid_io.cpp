@@ -35,8 +35,8 @@ Grid read_grid(const std::filesystem::path& file, double max_nodes) {
   return grid;
 }
 
-bool is_grid_file(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) return false;
+bool is_grid_file(const InputFile& file) {
+  if (!S_ISREG(file.status().st_mode)) return false;
   detail::GridSource source(file, 1e9, detail::GridSource::Part::Head);
   const std::string_view head = source.head();
   return reader_of(head) != nullptr || (head.size() >= 8 && head.substr(4, 3) == "n+2");

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "common/message.h"
+#include "reconstruct/io/input_file.h"
 #include "reconstruct/level_set/grid.h"
 
 namespace umtet {
@@ -27,8 +28,8 @@ struct GridRefused : ExplainedError {
 Grid read_grid(const std::filesystem::path& file, double max_nodes = 1e9);
 
 /// True for a regular file that begins like one of these formats, uncompressed or compressed. \throw std::system_error
-/// if it cannot be opened or read
-bool is_grid_file(const std::filesystem::path& file);
+/// if it cannot be read
+bool is_grid_file(const InputFile& file);
 
 /// Checks the head of a file: format and number of nodes. \throw as read_grid()
 void check_grid_head(const std::filesystem::path& file, double max_nodes = 1e9);

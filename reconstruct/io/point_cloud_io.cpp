@@ -179,7 +179,8 @@ void drop_unusable(const CloudSource& source, CloudFile& file) {
 }  // namespace
 
 CloudFile read_point_cloud(const std::filesystem::path& file, const std::string& columns) {
-  FileBytes bytes(file);
+  const InputFile input(file);
+  FileBytes bytes(input);
   CloudFile result = parse(bytes, file, true, columns);
   const CloudSource source = bytes.source(true);  // names the file
   check_numbers(source, result.cloud);
@@ -188,11 +189,11 @@ CloudFile read_point_cloud(const std::filesystem::path& file, const std::string&
   return result;
 }
 
-void check_scan_head(const std::filesystem::path& file, const std::string& columns) {
-  FileBytes bytes(file);
+void check_scan_head(const InputFile& file, const std::string& columns) {
+  const FileBytes bytes(file);
   CloudSource head = bytes.source(false);
   head.columns = columns;
-  check_head(head, file);
+  check_head(head, file.path());
 }
 
 std::string problem_of_columns(const std::string& columns) {
@@ -206,8 +207,12 @@ std::string problem_of_columns(const std::string& columns) {
 }
 
 CloudFile read_scan(const std::filesystem::path& file, const std::string& columns) {
+  return read_scan(InputFile(file), columns);
+}
+
+CloudFile read_scan(const InputFile& file, const std::string& columns) {
   FileBytes bytes(file);
-  CloudFile result = parse(bytes, file, false, columns);
+  CloudFile result = parse(bytes, file.path(), false, columns);
   const CloudSource source = bytes.source(false);  // names the file
   result.cloud.counts = {}, result.cloud.spreads = {};
   result.report.n_points = result.cloud.points.size();

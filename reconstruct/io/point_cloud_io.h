@@ -6,6 +6,7 @@
 
 #include "reconstruct/cloud/cloud_file.h"
 #include "reconstruct/cloud/point_cloud.h"
+#include "reconstruct/io/input_file.h"
 
 namespace umtet {
 
@@ -48,11 +49,12 @@ CloudFile read_point_cloud(const std::filesystem::path& file, const std::string&
 /// \throw CloudRefused for a file that is malformed or empty, if more than half of the points are unusable, or if there
 ///        are fewer different points than survey() requires
 /// \throw std::system_error naming the file, if it cannot be opened or read
+CloudFile read_scan(const InputFile& file, const std::string& columns = {});
 CloudFile read_scan(const std::filesystem::path& file, const std::string& columns = {});
 
 /// Checks the first megabyte of a file, independent of its size: rejects what read_scan() would reject because of the
-/// header, the first rows, or an impossible count. \throw CloudRefused, std::system_error as read_scan()
-void check_scan_head(const std::filesystem::path& file, const std::string& columns = {});
+/// header, the first rows, or an impossible count. \throw CloudRefused
+void check_scan_head(const InputFile& file, const std::string& columns = {});
 
 /// The reason why read_scan() accepts these columns for no file; empty if it may accept them.
 std::string problem_of_columns(const std::string& columns);

@@ -73,17 +73,23 @@ TriangleFile parse(const CloudSource& source, const std::filesystem::path& file)
 }  // namespace
 
 bool holds_triangles(const std::filesystem::path& file, PlyFaces faces) {
-  const std::optional<Format> format = format_of(FileBytes(file).source(false), file);
+  return holds_triangles(InputFile(file), faces);
+}
+
+bool holds_triangles(const InputFile& file, PlyFaces faces) {
+  const std::optional<Format> format = format_of(FileBytes(file).source(false), file.path());
   return format && !(format == Format::Ply && faces == PlyFaces::Ignored);
 }
 
-void check_triangles_head(const std::filesystem::path& file) { check_head(FileBytes(file).source(false), file); }
+void check_triangles_head(const InputFile& file) { check_head(FileBytes(file).source(false), file.path()); }
 
-TriangleFile read_triangles(const std::filesystem::path& file) {
+TriangleFile read_triangles(const std::filesystem::path& file) { return read_triangles(InputFile(file)); }
+
+TriangleFile read_triangles(const InputFile& file) {
   FileBytes bytes(file);
-  check_head(bytes.source(false), file);
+  check_head(bytes.source(false), file.path());
   bytes.read_rest();
-  return parse(bytes.source(false), file);
+  return parse(bytes.source(false), file.path());
 }
 
 void write_ply(std::ostream& out, const TriangleMesh& mesh) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "reconstruct/io/input_file.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/triangles/triangle_mesh.h"
 
@@ -37,6 +38,7 @@ enum class PlyFaces { Surface, Ignored };
 /// beginning only.
 ///
 /// \throw std::system_error naming the file, if it cannot be opened or read
+bool holds_triangles(const InputFile& file, PlyFaces faces = PlyFaces::Surface);
 bool holds_triangles(const std::filesystem::path& file, PlyFaces faces = PlyFaces::Surface);
 
 /// Reads a triangle mesh in STL (ascii, binary), OBJ, OFF (ascii) or PLY with faces. All numbers are in double
@@ -60,11 +62,11 @@ bool holds_triangles(const std::filesystem::path& file, PlyFaces faces = PlyFace
 /// \throw CloudRefused for a file that is malformed or truncated, no faces, an invalid index or coordinate, or corners
 ///        that are all in a plane
 /// \throw std::system_error naming the file, if it cannot be opened or read
+TriangleFile read_triangles(const InputFile& file);
 TriangleFile read_triangles(const std::filesystem::path& file);
 
-/// Checks the first megabyte of a file, and rejects what read_triangles() would reject there. \throw as
-/// read_triangles()
-void check_triangles_head(const std::filesystem::path& file);
+/// Checks the first megabyte of a file, and rejects what read_triangles() would reject there. \throw CloudRefused
+void check_triangles_head(const InputFile& file);
 
 /// Writes binary little-endian PLY: double x y z, vertex_indices of int and, if present, int label. read_triangles()
 /// returns the same mesh. The caller owns the stream and checks it.

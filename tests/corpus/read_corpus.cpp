@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
     } else if (kind == ".nrrd" || kind == ".nii" || kind == ".vtk" || kind == ".grid") {
       answer<umtet::GridRefused>(file, "read_grid", [](const auto& path) { return umtet::read_grid(path); });
     } else if (umtet::holds_triangles(file)) {
-      answer<umtet::CloudRefused>(file, "read_triangles", umtet::read_triangles);
+      answer<umtet::CloudRefused>(file, "read_triangles", [](const auto& path) { return umtet::read_triangles(path); });
     } else {
       answer<umtet::CloudRefused>(file, "read_scan", [](const auto& path) { return umtet::read_scan(path); });
       answer<umtet::CloudRefused>(file, "read_point_cloud",

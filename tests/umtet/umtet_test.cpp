@@ -9,11 +9,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "body/option_names.h"
-#include "pipeline/case/artefact.h"
 #include "mesh/expression/expression.h"
 #include "mesh/features/formula_domain.h"
+#include "mesh/io/surface_files.h"
+#include "pipeline/case/artefact.h"
+#include "pipeline/output/export_case.h"
 #include "pipeline/reports/certificate_report.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/run/run.h"
@@ -100,6 +103,129 @@ TEST(Umtet, BoundaryFacesHaveTheLabelsOfTheSamples) {
   }
 }
 
+/// The patch of each boundary face in a MEDIT file, by its vertices (from 0, ascending).
+std::map<Triangle, int> patches_of_medit(const fs::path& file) {
+  std::ifstream in(file);
+  std::map<Triangle, int> patches;
+  for (std::string word; in >> word && word != "Triangles";) continue;
+  std::size_t n = 0;
+  in >> n;
+  for (std::size_t k = 0; k < n; ++k) {
+    Triangle f;
+    int patch = 0;
+    in >> f[0] >> f[1] >> f[2] >> patch;
+    for (int& v : f) --v;
+    std::sort(f.begin(), f.end());
+    patches[f] = patch;
+  }
+  return patches;
+}
+
+std::map<Triangle, int> patches_of(const Mesh& mesh) {
+  std::vector<Triangle> faces = mesh.boundary;
+  faces.insert(faces.end(), mesh.walls.begin(), mesh.walls.end());
+  EXPECT_EQ(mesh.face_patch.size(), faces.size());
+  std::map<Triangle, int> patches;
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    std::sort(faces[k].begin(), faces[k].end());
+    patches[faces[k]] = mesh.patches.at(static_cast<std::size_t>(mesh.face_patch[k])).number;
+  }
+  return patches;
+}
+
+TEST(Umtet, ThePatchesOfASurfaceAreThoseOfTheExport) {
+  const Folder folder;
+  const fs::path file = folder.path / "cube.stl";
+  const TriangleMesh cube = test::cube();
+  write_surface(file, cube.V, cube.F, SurfaceFormat::Stl);
+  RunRequest request;
+  request.case_folder = folder.path / "case";
+  request.source = file;
+  request.parameters.set("cloud.file", file.string(), ParamSource::Flag, "test");
+  request.parameters.set("mesh.h", ".08", ParamSource::Flag, "test");
+  request.parameters.set("reconstruct.edges", "off", ParamSource::Flag, "test");  // the facade rounds them
+  Progress quiet(ProgressMode::None, Verbosity::Quiet);
+  run_case(request, quiet);
+  Options options;
+  options.body.mesh.h = .08;
+  const FittedBody body = fit_body(read_triangles(file).mesh, options);
+  struct Division {
+    const char* key;
+    double degrees;
+    std::size_t n_least;  // patches
+  };
+  for (const Division& d : {Division{"output.patch_planar", 5, 7}, {"output.patch_angle", 12, 2}, {"", 0, 1}}) {
+    Parameters parameters = request.parameters;
+    options.patches = {};
+    if (d.degrees > 0) {
+      parameters.set(d.key, std::to_string(d.degrees), ParamSource::Flag, "test");
+      (std::string(d.key) == "output.patch_planar" ? options.patches.planar : options.patches.angle) = d.degrees;
+    }
+    const std::vector<fs::path> exported = export_case(CasePaths{request.case_folder}, {"mesh"}, parameters, quiet);
+    const Mesh mesh = mesh_body(body, options);
+    EXPECT_GE(mesh.patches.size(), d.n_least) << d.key;
+    EXPECT_EQ(patches_of(mesh), patches_of_medit(exported.front())) << d.key;
+  }
+}
+
+TEST(Umtet, TheClosedHolesOfAScanAreThePatchOfTheExport) {
+  const Folder folder;
+  const fs::path file = folder.path / "cloud.ply";
+  OrientedPointCloud cloud;
+  for (int i = 0; i < 4000; ++i) {
+    const double z = 1 - (2 * i + 1) / 4000., r = std::sqrt(1 - z * z), a = 2.399963229728653 * i;
+    const Vec3 x(r * std::cos(a), r * std::sin(a), z);
+    if (x.x() > std::cos(.6)) continue;
+    cloud.points.push_back(x);
+    cloud.normals.push_back(x);
+  }
+  {
+    std::ofstream out(file, std::ios::binary);
+    write_ply(out, cloud);
+  }
+  RunRequest request;
+  request.case_folder = folder.path / "case";
+  request.source = file;
+  request.parameters.set("cloud.file", file.string(), ParamSource::Flag, "test");
+  request.parameters.set("mesh.h", ".1", ParamSource::Flag, "test");
+  Progress quiet(ProgressMode::None, Verbosity::Quiet);
+  run_case(request, quiet);
+  const std::vector<fs::path> exported =
+      export_case(CasePaths{request.case_folder}, {"mesh"}, request.parameters, quiet);
+  Options options;
+  options.body.mesh.h = .1;
+  const Mesh mesh = mesh_body(cloud, options);
+  ASSERT_EQ(mesh.patches.size(), 2u);
+  EXPECT_EQ(mesh.patches[1].name, "closed_holes");
+  EXPECT_EQ(patches_of(mesh), patches_of_medit(exported.front()));
+}
+
+TEST(Umtet, PatchesFollowLabelsAndWalls) {
+  OrientedPointCloud cloud = test::torus_cloud(6000);
+  for (const Vec3& x : cloud.points) cloud.labels.push_back(x.x() > 0 ? 7 : 3);
+  Options options;
+  options.body.mesh.h = .12;
+  options.patches.names = {{7, "right"}};
+  const Mesh mesh = mesh_body(cloud, options);
+  ASSERT_EQ(mesh.patches.size(), 2u);
+  EXPECT_EQ(mesh.patches[0].name + mesh.patches[1].name, "patch_3right");
+  for (std::size_t f = 0; f < mesh.boundary.size(); ++f) {
+    EXPECT_EQ(mesh.patches[mesh.face_patch[f]].number, mesh.labels[f]);
+  }
+
+  Options fluid;
+  fluid.box = Box(Vec3::Constant(-2), Vec3::Constant(2));
+  fluid.body.mesh.h = .3;
+  fluid.body.mesh.box_walls = fluid.body.mesh.complement = true;
+  const Mesh around = mesh_body(Expression("x^2 + y^2 + z^2 - 1"), fluid);
+  ASSERT_EQ(around.patches.size(), 2u);
+  EXPECT_EQ(around.patches[1].name, "walls");
+  ASSERT_FALSE(around.walls.empty());
+  for (std::size_t f = 0; f < around.face_patch.size(); ++f) {
+    EXPECT_EQ(around.face_patch[f], f < around.boundary.size() ? 0 : 1);
+  }
+}
+
 TEST(Umtet, TrianglesThatAreNoneAreRefused) {
   TriangleMesh mesh = test::torus();
   mesh.F.front()[1] = static_cast<int>(mesh.V.size());
@@ -141,6 +267,16 @@ TEST(Umtet, TheCertificateOfAFormulaIsThatOfTheProgram) {
   EXPECT_EQ(mesh.verdict.word(), "pass");
 }
 
+TEST(Umtet, PatchesThatCannotBeAreRefusedBeforeTheMesh) {
+  Options options;
+  options.box = Box(Vec3::Constant(-2), Vec3::Constant(2));
+  options.context.progress = [](const char*, double) { ADD_FAILURE() << "work has begun"; };
+  options.patches.planar = 90;
+  EXPECT_THROW(mesh_body(Expression("x^2 + y^2 + z^2 - 1"), options), std::invalid_argument);
+  options.patches = {.angle = 181};
+  EXPECT_THROW(mesh_body(Expression("x^2 + y^2 + z^2 - 1"), options), std::invalid_argument);
+}
+
 TEST(Umtet, ABodyWithSharpEdgesHasThemAndItsCertificateIsThatOfTheProgram) {
   const Folder folder;
   const std::string can = "max(x^2+y^2-1,abs(z)-1)";
@@ -149,9 +285,8 @@ TEST(Umtet, ABodyWithSharpEdgesHasThemAndItsCertificateIsThatOfTheProgram) {
   options.body.mesh.h = .25;
   const Mesh mesh = mesh_body(domain_of_formula(can), options);
   EXPECT_EQ(mesh.verdict.word(), "pass");
-  ASSERT_EQ(mesh.patches.size(), mesh.boundary.size());
-  EXPECT_EQ(*std::min_element(mesh.patches.begin(), mesh.patches.end()), 0);
-  EXPECT_EQ(*std::max_element(mesh.patches.begin(), mesh.patches.end()), 2);
+  ASSERT_EQ(mesh.patches.size(), 3U);
+  for (int p = 0; p < 3; ++p) EXPECT_EQ(mesh.patches[p].name, "patch_" + std::to_string(p + 1));
   ASSERT_EQ(mesh.curves.size(), 2U);
   for (const std::vector<int>& curve : mesh.curves) {
     ASSERT_GT(curve.size(), 10U);
@@ -167,6 +302,10 @@ TEST(Umtet, ABodyWithSharpEdgesHasThemAndItsCertificateIsThatOfTheProgram) {
   request.parameters.set("mesh.box", "-1.5,-1.5,-1.5,1.5,1.5,1.5", ParamSource::Flag, "test");
   request.parameters.set("mesh.h", ".25", ParamSource::Flag, "test");
   EXPECT_EQ(measured_by(mesh).dump(1), measured_by_program(folder.path, request).dump(1));
+  Progress quiet(ProgressMode::None, Verbosity::Quiet);
+  const std::vector<fs::path> exported =
+      export_case(CasePaths{folder.path / "case"}, {"mesh"}, request.parameters, quiet);
+  EXPECT_EQ(patches_of(mesh), patches_of_medit(exported.front()));
 }
 
 TEST(Umtet, WhatHasNoMeshIsAnErrorWithEvidence) {

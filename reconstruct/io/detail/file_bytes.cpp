@@ -4,38 +4,25 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <string_view>
-#include <system_error>
 
 namespace umtet::detail {
 namespace {
 
-constexpr std::size_t kHead = 1 << 20;  // real headers have some hundred bytes, with comments some thousand
+constexpr std::size_t kPiece = 1 << 20;  // bytes that are read at once: many more than a call costs
 
 }  // namespace
 
-FileBytes::FileBytes(const std::filesystem::path& file) : file_(file) {
-  if (std::filesystem::is_directory(file)) fail(EISDIR);
-  errno = 0;
-  in_.open(file, std::ios::binary);
-  if (!in_) fail(errno);
-  read(kHead, bytes_);
-  std::error_code unknown;  // of a pipe
-  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
-  if (!unknown && size > bytes_.size()) n_left_ = size - bytes_.size();
+FileBytes::FileBytes(const InputFile& file) : file_(file), bytes_(file.head()), at_(bytes_.size()) {
+  const auto size = static_cast<std::size_t>(file.status().st_size);  // 0 of a pipe
+  if (size > at_) n_left_ = size - at_;
 }
 
 void FileBytes::read_rest() {
-  if (in_.eof()) return;
-  bytes_.reserve(bytes_.size() + n_left_ + kHead);  // it grows by a whole step before it is cut
-  while (read(kHead, bytes_)) {
+  bytes_.reserve(bytes_.size() + n_left_ + kPiece);  // it grows by a whole step before it is cut
+  while (read(kPiece, bytes_)) {
   }
   n_left_ = 0;
-}
-
-void FileBytes::fail(int error) const {
-  throw std::system_error(error != 0 ? error : EIO, std::generic_category(), file_.string());
 }
 
 std::string_view FileBytes::from(std::size_t at, std::size_t n) {
@@ -46,19 +33,18 @@ std::string_view FileBytes::from(std::size_t at, std::size_t n) {
     block_.erase(0, at - block_begin_);
   }
   block_begin_ = at;
-  while (block_.size() < n && read(std::max(kHead, n - block_.size()), block_)) {
+  while (block_.size() < n && read(std::max(kPiece, n - block_.size()), block_)) {
   }
   return block_;
 }
 
 bool FileBytes::read(std::size_t n, std::string& bytes) {
-  if (in_.eof()) return false;
   const std::size_t before = bytes.size();
   bytes.resize(before + n);
-  in_.read(bytes.data() + before, static_cast<std::streamsize>(n));
-  bytes.resize(before + static_cast<std::size_t>(in_.gcount()));
-  if (in_.bad()) fail(errno);
-  return in_.gcount() > 0;
+  const std::size_t n_read = file_.read(at_, bytes.data() + before, n);
+  bytes.resize(before + n_read);
+  at_ += n_read;
+  return n_read > 0;
 }
 
 void refuse_endless_line(const CloudSource& head) {

@@ -2,11 +2,11 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
 #include "reconstruct/io/detail/cloud_source.h"
+#include "reconstruct/io/input_file.h"
 
 namespace umtet::detail {
 
@@ -14,11 +14,11 @@ namespace umtet::detail {
 /// rest, at once or in blocks.
 class FileBytes {
  public:
-  /// \throw std::system_error naming the file, if it cannot be opened
-  explicit FileBytes(const std::filesystem::path& file);
+  /// @param file  has to outlive the object
+  explicit FileBytes(const InputFile& file);
   /// The bytes read so far.
   CloudSource source(bool needs_normals) const {
-    return {.name = file_.string(), .bytes = bytes_, .needs_normals = needs_normals, .bytes_left_out = n_left_};
+    return {.name = file_.path().string(), .bytes = bytes_, .needs_normals = needs_normals, .bytes_left_out = n_left_};
   }
   void read_rest();
   /// The bytes read so far, with access to the rest in blocks. The object must not be moved afterwards.
@@ -33,13 +33,12 @@ class FileBytes {
   std::string_view from(std::size_t at, std::size_t n);
 
  private:
-  [[noreturn]] void fail(int error) const;
   /// Reads further bytes and appends them to `bytes`. @return false at the end of the file
   bool read(std::size_t n, std::string& bytes);
 
-  std::filesystem::path file_;
-  std::ifstream in_;
+  const InputFile& file_;
   std::string bytes_;
+  std::size_t at_;  ///< position in the file after the bytes read so far
   std::size_t n_left_ = 0;
   std::string block_;
   std::size_t block_begin_ = 0;  ///< position in the file

@@ -8,8 +8,8 @@
 
 #include "distributed/exchange/collect.h"
 #include "distributed/solver/ghost_tets.h"
-#include "mesh/io/patches.h"
 #include "mesh/io/solver_mesh.h"
+#include "mesh/patches/patches.h"
 #include "mesh/universal_mesh.h"
 #include "tests/distributed/ranks.h"
 #include "tests/support/domains.h"
@@ -146,7 +146,7 @@ TEST(SolverPart, PatchesAreThoseOfAnExport) {
     faces = gathered(MPI_COMM_WORLD, faces);
     if (rank() != 0) continue;
     const SolverMesh whole = solver_mesh(TetMesh{m.one.final, m.one.submesh.mesh.C});
-    const std::vector<int> pieces = smooth_pieces(whole, 180);
+    const std::vector<int> pieces = smooth_pieces(whole.nodes, whole.triangles(), 180);
     std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.number < b.number; });
     ASSERT_EQ(faces.size(), whole.n_faces());
     for (std::size_t f = 0; f < faces.size(); ++f) {

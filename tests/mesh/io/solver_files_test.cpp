@@ -19,7 +19,7 @@
 
 #include "mesh/io/detail/solvers/fixed_width.h"
 #include "mesh/io/msh_piece.h"
-#include "mesh/io/patches.h"
+#include "mesh/patches/patches.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/shell.h"
 #include "tests/support/tet_shapes.h"
@@ -49,7 +49,8 @@ SolverMesh block(int n = 3) {
   testing::perturb(tets, 0.1, 5);
   SolverMesh mesh = solver_mesh(tets);
   std::vector<int> patch;
-  for (const Vec3& x : face_geometry(mesh).centroid) patch.push_back(x.x() < .2 ? 2 : x.x() > n - .2 ? 0 : 1);
+  for (const Vec3& x : face_geometry(mesh.nodes, mesh.triangles()).centroid)
+    patch.push_back(x.x() < .2 ? 2 : x.x() > n - .2 ? 0 : 1);
   set_patches(mesh, patch, {{"head-2", 12}, {"surface", 1}, {"Feet", 7}});
   mesh.cell_data["mean_ratio"] = std::vector<double>(mesh.n_tets(), .5);
   mesh.point_data["background_vertex"] = std::vector<std::int64_t>(mesh.nodes.size(), std::int64_t{1} << 60);
@@ -123,7 +124,7 @@ std::map<std::string, Json> read_back(const std::vector<fs::path>& files) {
 /// The areas of the patches (their corners) are those of the mesh.
 void expect_areas(const Json& found, const SolverMesh& mesh, double tolerance) {
   std::map<std::string, double> area;
-  const FaceGeometry faces = face_geometry(mesh);
+  const FaceGeometry faces = face_geometry(mesh.nodes, mesh.triangles());
   for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
     area[std::to_string(mesh.patches[mesh.face_patch[f]].number)] += faces.area[f];
   }
@@ -264,7 +265,7 @@ TEST(SolverFiles, AnXmlParserFindsInFilesOfFebioWhatWasWritten) {
       for (int k = 0; k < 3; ++k) EXPECT_EQ(found["nodes"][i][k].get<double>(), mesh.nodes[i][k]) << i;
     }
     const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
-    const FaceGeometry faces = face_geometry(mesh);
+    const FaceGeometry faces = face_geometry(mesh.nodes, mesh.triangles());
     ASSERT_EQ(found["sets"].size(), mesh.patches.size() + 1);
     ASSERT_EQ(found["surfaces"].size(), mesh.patches.size() + 1);
     EXPECT_EQ(found["sets"]["boundary"], from_one(boundary_nodes(mesh)));
@@ -375,7 +376,7 @@ TEST(SolverFiles, SurfacesOfAbaqusAreTheFacesBehindTheirNumbers) {
     sum.try_emplace(name, Vec3::Zero()).first->second += (b - a).cross(d - a) / 2;
   }
   ASSERT_EQ(sum.size(), 4u);
-  const FaceGeometry faces = face_geometry(mesh);
+  const FaceGeometry faces = face_geometry(mesh.nodes, mesh.triangles());
   std::vector<Vec3> expected(3, Vec3::Zero());
   for (std::size_t f = 0; f < mesh.n_faces(); ++f) expected[mesh.face_patch[f]] += faces.area[f] * faces.normal[f];
   for (std::size_t p = 0; p < 3; ++p) {

@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "mesh/io/patches.h"
+#include "mesh/patches/patches.h"
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/output/report_page.h"
 #include "pipeline/output/report_plot.h"
@@ -62,7 +62,7 @@ SolverMesh sides(const MeshFile& mesh) {
   SolverMesh m = solver_mesh(mesh.mesh);
   std::vector<MeshPart> patches;
   for (int p = 1; p <= 6; ++p) patches.push_back({"side_" + std::to_string(p), 10 * p});
-  set_patches(m, smooth_pieces(m, 45), patches);
+  set_patches(m, smooth_pieces(m.nodes, m.triangles(), 45), patches);
   return m;
 }
 

@@ -3,6 +3,7 @@
 #include "pipeline/run/run.h"
 
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -50,6 +51,45 @@ TEST_F(FilesOfARun, AreReadOnceForTheirChecksum) {
   }
   EXPECT_EQ(files.count("duck.ply"), 1u);
   for (const auto& [file, n] : files) EXPECT_EQ(n, 1) << file;
+}
+
+/// Counts how often a file is opened while the object lives.
+class Opened {
+ public:
+  explicit Opened(const fs::path& file) : descriptor_(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+    // Equal events in a row are one, so the events between two openings are watched, too.
+    watches_ = ::inotify_add_watch(descriptor_, file.c_str(), IN_OPEN | IN_ACCESS | IN_CLOSE) >= 0;
+  }
+  ~Opened() { ::close(descriptor_); }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+  bool watches() const { return watches_; }
+  int count() const {
+    int n = 0;
+    inotify_event event = {};  // those of a file have no name behind them
+    while (::read(descriptor_, &event, sizeof event) == sizeof event) n += (event.mask & IN_OPEN) != 0 ? 1 : 0;
+    return n;
+  }
+
+ private:
+  int descriptor_;
+  bool watches_ = false;
+};
+
+TEST_F(FilesOfARun, TheGivenOneIsOpenedOnce) {
+  for (const double h : {.16, .14}) {
+    const Opened opened(cloud);
+    if (!opened.watches()) GTEST_SKIP() << "no inotify";
+    read_by_run(h);
+    EXPECT_GE(stages_run, 1u);
+    EXPECT_EQ(opened.count(), 1) << h;
+  }
+  const Opened opened(cloud);
+  const InputFile input(cloud);
+  FileStamps stamps;
+  EXPECT_EQ(stamps.of(input), stamp(cloud));
+  EXPECT_TRUE(stamps.knows(input));
+  EXPECT_EQ(opened.count(), 2) << "the test counts every opening";
 }
 
 TEST_F(FilesOfARun, AreReadOnceWhereAMeshIsMadeBesideTheFormerOne) {

@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::size_t kPiece = 1 << 16;  // bytes that become numbers at once
 
+[[noreturn]] void refuse_grid(const std::string& name, const std::string& what) {
+  throw GridRefused(name + ": " + what);
+}
+
 }  // namespace
 
 std::optional<NumberType> number_type(std::string_view name) {
@@ -71,9 +75,10 @@ std::optional<NumberType> number_type(std::string_view name) {
 }
 
 GridSource::GridSource(const std::filesystem::path& file, double max_nodes, Part part)
-    : ByteStream(file, [](const std::string& name, const std::string& what) { throw GridRefused(name + ": " + what); }),
-      max_nodes_(max_nodes),
-      part_(part) {}
+    : ByteStream(file, refuse_grid), max_nodes_(max_nodes), part_(part) {}
+
+GridSource::GridSource(const InputFile& file, double max_nodes, Part part)
+    : ByteStream(file.descriptor(), file.path(), refuse_grid), max_nodes_(max_nodes), part_(part) {}
 
 void GridSource::require_nodes(const std::vector<std::int64_t>& counts, double bytes_each) {
   double n = 1;

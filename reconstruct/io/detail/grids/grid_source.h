@@ -33,6 +33,7 @@ class GridSource : public ByteStream {
   /// \throw GridRefused if it is not a regular file
   /// \throw std::system_error
   GridSource(const std::filesystem::path& file, double max_nodes, Part part = Part::Whole);
+  GridSource(const InputFile& file, double max_nodes, Part part = Part::Whole);
 
   /// Checks that there are no more nodes than permitted, and no more than the file can contain with this number of
   /// bytes each.

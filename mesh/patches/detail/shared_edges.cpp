@@ -1,15 +1,15 @@
-#include "mesh/io/detail/surface/shared_edges.h"
+#include "mesh/patches/detail/shared_edges.h"
 
 #include <algorithm>
 #include <array>
 
 namespace umtet::detail {
 
-std::vector<SharedEdge> shared_edges(const SolverMesh& mesh) {
+std::vector<SharedEdge> shared_edges(const std::vector<Triangle>& faces) {
   std::vector<std::array<int, 3>> uses;  // v, w, face
-  uses.reserve(3 * mesh.n_faces());
-  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
-    const std::array<int, 6> ids = mesh.face(f);
+  uses.reserve(3 * faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const Triangle& ids = faces[f];
     for (int k = 0; k < 3; ++k) {
       const auto [v, w] = std::minmax(ids[k], ids[(k + 1) % 3]);
       uses.push_back({v, w, static_cast<int>(f)});

@@ -1,4 +1,4 @@
-#include "mesh/io/patches.h"
+#include "mesh/patches/patches.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "common/disjoint_sets.h"
-#include "mesh/io/detail/surface/shared_edges.h"
+#include "mesh/patches/detail/shared_edges.h"
 
 namespace umtet {
 
@@ -23,7 +23,7 @@ namespace {
 /// Pieces of faces with one label, and the lengths of their borders.
 class Islands {
  public:
-  Islands(const SolverMesh& mesh, const std::vector<int>& labels);
+  Islands(const std::vector<Vec3>& V, const std::vector<Triangle>& F, const std::vector<int>& labels);
   void absorb(double least);
   int label(std::size_t face) const {
     int p = piece_of_[face];
@@ -45,14 +45,15 @@ class Islands {
   std::vector<int> merged_;    ///< the piece a piece has gone into, or -1
 };
 
-Islands::Islands(const SolverMesh& mesh, const std::vector<int>& labels) : piece_of_(mesh.n_faces(), -1) {
-  const std::vector<SharedEdge> edges = shared_edges(mesh);
-  DisjointSets joined(mesh.n_faces());
+Islands::Islands(const std::vector<Vec3>& V, const std::vector<Triangle>& F, const std::vector<int>& labels)
+    : piece_of_(F.size(), -1) {
+  const std::vector<SharedEdge> edges = shared_edges(F);
+  DisjointSets joined(F.size());
   for (const SharedEdge& e : edges) {
     if (labels[e.face] == labels[e.other]) joined.unite(e.face, e.other);
   }
-  const FaceGeometry faces = face_geometry(mesh);
-  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
+  const FaceGeometry faces = face_geometry(V, F);
+  for (std::size_t f = 0; f < F.size(); ++f) {
     int& piece = piece_of_[joined.find(static_cast<int>(f))];
     if (piece < 0) {
       piece = static_cast<int>(pieces_.size());
@@ -64,7 +65,7 @@ Islands::Islands(const SolverMesh& mesh, const std::vector<int>& labels) : piece
   for (const SharedEdge& e : edges) {
     const int p = piece_of_[e.face], q = piece_of_[e.other];
     if (p == q) continue;
-    const double length = (mesh.nodes[e.v] - mesh.nodes[e.w]).norm();
+    const double length = (V[e.v] - V[e.w]).norm();
     pieces_[p].border[q] += length;
     pieces_[q].border[p] += length;
   }
@@ -117,11 +118,10 @@ void Islands::absorb(double least) {
 
 }  // namespace
 
-FaceGeometry face_geometry(const SolverMesh& mesh) {
+FaceGeometry face_geometry(const std::vector<Vec3>& V, const std::vector<Triangle>& F) {
   FaceGeometry faces;
-  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
-    const std::array<int, 6> ids = mesh.face(f);
-    const Vec3 &a = mesh.nodes[ids[0]], &b = mesh.nodes[ids[1]], &c = mesh.nodes[ids[2]];
+  for (const Triangle& face : F) {
+    const Vec3 &a = V[face[0]], &b = V[face[1]], &c = V[face[2]];
     const Vec3 n = (b - a).cross(c - a);
     faces.centroid.push_back((a + b + c) / 3);
     faces.area.push_back(n.norm() / 2);
@@ -130,30 +130,31 @@ FaceGeometry face_geometry(const SolverMesh& mesh) {
   return faces;
 }
 
-std::vector<int> smooth_pieces(const SolverMesh& mesh, double angle) {
-  const FaceGeometry faces = face_geometry(mesh);
+std::vector<int> smooth_pieces(const std::vector<Vec3>& V, const std::vector<Triangle>& F, double angle) {
+  const FaceGeometry faces = face_geometry(V, F);
   // A little more than 180 degrees, where the cosine of rounding may fall.
   const double least_cosine = angle >= 180 ? -2 : std::cos(angle * std::numbers::pi / 180);
-  DisjointSets joined(mesh.n_faces());
-  for (const SharedEdge& e : shared_edges(mesh)) {
+  DisjointSets joined(F.size());
+  for (const SharedEdge& e : shared_edges(F)) {
     if (faces.normal[e.face].dot(faces.normal[e.other]) >= least_cosine) joined.unite(e.face, e.other);
   }
-  std::vector<double> area(mesh.n_faces(), 0);
-  for (std::size_t f = 0; f < mesh.n_faces(); ++f) area[joined.find(static_cast<int>(f))] += faces.area[f];
+  std::vector<double> area(F.size(), 0);
+  for (std::size_t f = 0; f < F.size(); ++f) area[joined.find(static_cast<int>(f))] += faces.area[f];
   std::vector<int> roots;
-  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
+  for (std::size_t f = 0; f < F.size(); ++f) {
     if (joined.find(static_cast<int>(f)) == static_cast<int>(f)) roots.push_back(static_cast<int>(f));
   }
   std::stable_sort(roots.begin(), roots.end(), [&](int a, int b) { return area[a] > area[b]; });
-  std::vector<int> number(mesh.n_faces(), 0), piece(mesh.n_faces());
+  std::vector<int> number(F.size(), 0), piece(F.size());
   for (std::size_t i = 0; i < roots.size(); ++i) number[roots[i]] = static_cast<int>(i);
-  for (std::size_t f = 0; f < mesh.n_faces(); ++f) piece[f] = number[joined.find(static_cast<int>(f))];
+  for (std::size_t f = 0; f < F.size(); ++f) piece[f] = number[joined.find(static_cast<int>(f))];
   return piece;
 }
 
-void absorb_islands(const SolverMesh& mesh, double least, std::vector<int>& labels) {
-  if (labels.size() != mesh.n_faces()) throw std::invalid_argument("absorb_islands: one label a face");
-  Islands islands(mesh, labels);
+void absorb_islands(const std::vector<Vec3>& V, const std::vector<Triangle>& F, double least,
+                    std::vector<int>& labels) {
+  if (labels.size() != F.size()) throw std::invalid_argument("absorb_islands: one label a face");
+  Islands islands(V, F, labels);
   islands.absorb(least);
   for (std::size_t f = 0; f < labels.size(); ++f) labels[f] = islands.label(f);
 }

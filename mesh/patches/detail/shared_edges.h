@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh/io/solver_mesh.h"
+#include "mesh/core/tet_mesh.h"
 
 namespace umtet::detail {
 
@@ -13,6 +13,6 @@ struct SharedEdge {
 };
 
 /// The edges shared by exactly two boundary faces, by corners.
-std::vector<SharedEdge> shared_edges(const SolverMesh& mesh);
+std::vector<SharedEdge> shared_edges(const std::vector<Triangle>& faces);
 
 }  // namespace umtet::detail

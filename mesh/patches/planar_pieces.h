@@ -2,12 +2,12 @@
 
 #include <vector>
 
-#include "mesh/io/solver_mesh.h"
+#include "mesh/core/tet_mesh.h"
 
 namespace umtet {
 
-/// Planar parts of a boundary: for every face the number of its plane, from 0, largest area first; -1 for faces in no
-/// plane.
+/// Planar parts of a boundary with vertices V and faces F: for every face the number of its plane, from 0, largest area
+/// first; -1 for faces in no plane.
 ///
 /// Region growing begins at the flattest face. Faces join over edges while their normal is within `angle` of the
 /// plane's normal, which is the mean over its faces; the faces are collected again until the set does not change. A
@@ -25,6 +25,6 @@ namespace umtet {
 /// @param least  model units^2
 /// \throw std::invalid_argument for an angle out of range
 /// Cost: a few microseconds per face.
-std::vector<int> planar_pieces(const SolverMesh& mesh, double angle, double least);
+std::vector<int> planar_pieces(const std::vector<Vec3>& V, const std::vector<Triangle>& F, double angle, double least);
 
 }  // namespace umtet

@@ -1,4 +1,4 @@
-#include "mesh/io/planar_pieces.h"
+#include "mesh/patches/planar_pieces.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "mesh/io/detail/surface/shared_edges.h"
-#include "mesh/io/patches.h"
+#include "mesh/patches/detail/shared_edges.h"
+#include "mesh/patches/patches.h"
 
 namespace umtet {
 namespace {
@@ -21,7 +21,7 @@ double angle_between(const Vec3& a, const Vec3& b) { return 2 * std::atan2((a - 
 
 class PlaneFinder {
  public:
-  PlaneFinder(const SolverMesh& mesh, double angle, double least);
+  PlaneFinder(const std::vector<Vec3>& V, const std::vector<Triangle>& F, double angle, double least);
   std::vector<int> operator()();
 
  private:
@@ -29,12 +29,9 @@ class PlaneFinder {
   Vec3 mean_normal(const std::vector<int>& faces) const;
   bool is_flat(const std::vector<int>& faces, const Vec3& normal);
   std::vector<int> grown(int seed);
-  std::array<int, 3> corners(int f) const {
-    const std::array<int, 6> ids = mesh_.face(f);
-    return {ids[0], ids[1], ids[2]};
-  }
 
-  const SolverMesh& mesh_;
+  const std::vector<Vec3>& V_;
+  const std::vector<Triangle>& F_;
   double angle_, least_;
   FaceGeometry faces_;
   std::vector<std::array<int, 3>> neighbours_;  ///< -1: none
@@ -45,25 +42,26 @@ class PlaneFinder {
   int n_searches_ = 0;
 };
 
-PlaneFinder::PlaneFinder(const SolverMesh& mesh, double angle, double least)
-    : mesh_(mesh),
+PlaneFinder::PlaneFinder(const std::vector<Vec3>& V, const std::vector<Triangle>& F, double angle, double least)
+    : V_(V),
+      F_(F),
       angle_(angle),
       least_(least),
-      faces_(face_geometry(mesh)),
-      neighbours_(mesh.n_faces(), {-1, -1, -1}),
-      bend_(mesh.n_faces(), 0),
-      plane_of_(mesh.n_faces(), -1),
-      n_outside_(mesh.nodes.size(), 0),
-      seen_in_(mesh.n_faces(), 0) {
-  for (const detail::SharedEdge& e : detail::shared_edges(mesh)) {
+      faces_(face_geometry(V, F)),
+      neighbours_(F.size(), {-1, -1, -1}),
+      bend_(F.size(), 0),
+      plane_of_(F.size(), -1),
+      n_outside_(V.size(), 0),
+      seen_in_(F.size(), 0) {
+  for (const detail::SharedEdge& e : detail::shared_edges(F)) {
     const double bend = angle_between(faces_.normal[e.face], faces_.normal[e.other]);
     for (const auto& [f, g] : {std::pair(e.face, e.other), std::pair(e.other, e.face)}) {
       *std::find(neighbours_[f].begin(), neighbours_[f].end(), -1) = g;
       bend_[f] = std::max(bend_[f], bend);
     }
   }
-  for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
-    for (const int v : corners(static_cast<int>(f))) ++n_outside_[v];
+  for (const Triangle& face : F) {
+    for (const int v : face) ++n_outside_[v];
   }
 }
 
@@ -92,7 +90,7 @@ Vec3 PlaneFinder::mean_normal(const std::vector<int>& faces) const {
 bool PlaneFinder::is_flat(const std::vector<int>& faces, const Vec3& normal) {
   const auto count = [&](int step) {
     for (const int f : faces) {
-      for (const int v : corners(f)) n_outside_[v] += step;
+      for (const int v : F_[f]) n_outside_[v] += step;
     }
   };
   count(-1);
@@ -101,8 +99,8 @@ bool PlaneFinder::is_flat(const std::vector<int>& faces, const Vec3& normal) {
     const double a = angle_between(faces_.normal[f], normal);
     area += faces_.area[f];
     sum += faces_.area[f] * a * a;
-    const std::array<int, 3> ids = corners(f);
-    if (std::any_of(ids.begin(), ids.end(), [&](int v) { return n_outside_[v] == 0; })) inner += faces_.area[f];
+    const Triangle& face = F_[f];
+    if (std::any_of(face.begin(), face.end(), [&](int v) { return n_outside_[v] == 0; })) inner += faces_.area[f];
   }
   count(1);
   return inner >= least_ && sum <= area * angle_ * angle_ / 9;
@@ -127,7 +125,7 @@ std::vector<int> PlaneFinder::grown(int seed) {
 }
 
 std::vector<int> PlaneFinder::operator()() {
-  std::vector<int> seeds(mesh_.n_faces());
+  std::vector<int> seeds(F_.size());
   std::iota(seeds.begin(), seeds.end(), 0);
   const std::vector<double> bend = bend_;
   std::stable_sort(seeds.begin(), seeds.end(), [&](int a, int b) { return bend[a] < bend[b]; });
@@ -141,8 +139,8 @@ std::vector<int> PlaneFinder::operator()() {
     for (const int f : faces) plane_of_[f] = static_cast<int>(area.size());
     area.push_back(0);
   }
-  absorb_islands(mesh_, least_, plane_of_);
-  for (std::size_t f = 0; f < mesh_.n_faces(); ++f) {
+  absorb_islands(V_, F_, least_, plane_of_);
+  for (std::size_t f = 0; f < F_.size(); ++f) {
     if (plane_of_[f] >= 0) area[plane_of_[f]] += faces_.area[f];
   }
   std::vector<int> order(area.size()), number(area.size());
@@ -155,9 +153,9 @@ std::vector<int> PlaneFinder::operator()() {
 
 }  // namespace
 
-std::vector<int> planar_pieces(const SolverMesh& mesh, double angle, double least) {
+std::vector<int> planar_pieces(const std::vector<Vec3>& V, const std::vector<Triangle>& F, double angle, double least) {
   if (!(angle > 0 && angle < 90)) throw std::invalid_argument("planar_pieces: the angle must be in (0, 90)");
-  return PlaneFinder(mesh, angle * std::numbers::pi / 180, least)();
+  return PlaneFinder(V, F, angle * std::numbers::pi / 180, least)();
 }
 
 }  // namespace umtet

@@ -1,4 +1,4 @@
-#include "mesh/io/planar_pieces.h"
+#include "mesh/patches/planar_pieces.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/io/patches.h"
+#include "mesh/io/solver_mesh.h"
+#include "mesh/patches/patches.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"
 #include "tests/support/tet_shapes.h"
@@ -52,19 +53,19 @@ SolverMesh meshed(ImplicitFunctionRef psi, double h) {
 }
 
 double least_area(const SolverMesh& mesh) {
-  const std::vector<double> area = face_geometry(mesh).area;
+  const std::vector<double> area = face_geometry(mesh.nodes, mesh.triangles()).area;
   return 20 * std::accumulate(area.begin(), area.end(), 0.) / static_cast<double>(area.size());
 }
 
 TEST(PlanarPieces, ARoundedCubeHasSixPlanesAndARest) {
   const RoundedCube psi{.4};
   const SolverMesh mesh = meshed(psi, .13);
-  const std::vector<int> angular = smooth_pieces(mesh, 20);
+  const std::vector<int> angular = smooth_pieces(mesh.nodes, mesh.triangles(), 20);
   EXPECT_EQ(*std::max_element(angular.begin(), angular.end()), 0)
       << "an angle between neighbours leaks round the edges";
-  const std::vector<int> plane = planar_pieces(mesh, 5, least_area(mesh));
+  const std::vector<int> plane = planar_pieces(mesh.nodes, mesh.triangles(), 5, least_area(mesh));
   ASSERT_EQ(*std::max_element(plane.begin(), plane.end()), 5);
-  const FaceGeometry faces = face_geometry(mesh);
+  const FaceGeometry faces = face_geometry(mesh.nodes, mesh.triangles());
   std::vector<Vec3> area(7, Vec3::Zero());
   double rest = 0;
   for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
@@ -88,33 +89,33 @@ TEST(PlanarPieces, WhatBendsEvenlyIsNoPlane) {
   for (const double h : {.2, .12}) {
     const SolverMesh mesh = meshed(psi, h);
     for (const double angle : {3., 8.}) {
-      const std::vector<int> plane = planar_pieces(mesh, angle, least_area(mesh));
+      const std::vector<int> plane = planar_pieces(mesh.nodes, mesh.triangles(), angle, least_area(mesh));
       EXPECT_EQ(*std::max_element(plane.begin(), plane.end()), 1) << h << ' ' << angle;
-      const FaceGeometry faces = face_geometry(mesh);
+      const FaceGeometry faces = face_geometry(mesh.nodes, mesh.triangles());
       for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
         EXPECT_TRUE(plane[f] < 0 || std::abs(faces.normal[f].z()) > .9);
       }
     }
   }
   const SolverMesh ball = meshed(testing::sphere(), .12);
-  const std::vector<int> none = planar_pieces(ball, 6, least_area(ball));
+  const std::vector<int> none = planar_pieces(ball.nodes, ball.triangles(), 6, least_area(ball));
   EXPECT_EQ(*std::max_element(none.begin(), none.end()), -1);
 }
 
 TEST(PlanarPieces, ABoxIsAllPlanesTheLargestFirst) {
   // Two by four by four cubes.
   const SolverMesh mesh = solver_mesh(testing::cubes(4, [](int i, int, int) { return i < 2; }));
-  const std::vector<int> plane = planar_pieces(mesh, 5, 1);
-  const FaceGeometry faces = face_geometry(mesh);
+  const std::vector<int> plane = planar_pieces(mesh.nodes, mesh.triangles(), 5, 1);
+  const FaceGeometry faces = face_geometry(mesh.nodes, mesh.triangles());
   for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
     EXPECT_EQ(plane[f]<2, std::abs(faces.normal[f].x())> .5);
     for (std::size_t g = 0; g < f; ++g) EXPECT_EQ(plane[f] == plane[g], faces.normal[f].dot(faces.normal[g]) > .5);
   }
-  const std::vector<int> large = planar_pieces(mesh, 5, 10);  // four sides have an area of 8
+  const std::vector<int> large = planar_pieces(mesh.nodes, mesh.triangles(), 5, 10);  // four sides have an area of 8
   EXPECT_EQ(*std::max_element(large.begin(), large.end()), 1);
   EXPECT_EQ(*std::min_element(large.begin(), large.end()), -1);
-  EXPECT_THROW(planar_pieces(mesh, 0, 1), std::invalid_argument);
-  EXPECT_THROW(planar_pieces(mesh, 90, 1), std::invalid_argument);
+  EXPECT_THROW(planar_pieces(mesh.nodes, mesh.triangles(), 0, 1), std::invalid_argument);
+  EXPECT_THROW(planar_pieces(mesh.nodes, mesh.triangles(), 90, 1), std::invalid_argument);
 }
 
 }  // namespace
