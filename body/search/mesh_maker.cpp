@@ -86,6 +86,8 @@ const ZeroSetChoice& MeshMaker::pieces_at(double h, const SizeField* sizes) {
 // Share of the surface that is thinner than two layers of tets: then flat tets are the rule, and what repair may reach
 // of them is the aim.
 constexpr double kMostlyThin = .3;
+// Flips raise the tets of a thin body with sharp edges by so much in a third of the time that the last tets take.
+constexpr double kFlipsGain = .05;
 
 UmParams MeshMaker::params_for(const ZeroSetChoice& pieces, double h) const {
   UmParams params = params_;
@@ -200,8 +202,10 @@ MeshMaker::Begun MeshMaker::choose(const SizedBackground& background, double h, 
 }
 
 void MeshMaker::fit_edges(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {
+  const double within_reach =
+      is_thickened_ ? kFlipsGain + quality_within_reach(thickness_->second.share(kMostlyThin), a.h) : 1;
   PiecewiseFit made = fit_piecewise(*domain_.piecewise, background.mesh, std::move(chosen), options_.mesh,
-                                    context_.part(kFit, kCertificate));
+                                    within_reach, context_.part(kFit, kCertificate));
   a.result = std::move(made.result);
   round_to_file(a.result, domain_.shift);
   if (!a.made()) return;

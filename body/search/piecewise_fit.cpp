@@ -64,13 +64,16 @@ PiecewiseMeshParams piecewise_params(const MeshOptions& options) {
 }
 
 PiecewiseFit fit_piecewise(const PiecewiseBody& body, const BackgroundMesh& background, ChosenSubmesh chosen,
-                           const MeshOptions& options, const Context& context) {
+                           const MeshOptions& options, double within_reach, const Context& context) {
+  PiecewiseMeshParams params = piecewise_params(options);
+  params.local_flips.mend_below = std::min(params.local_flips.mend_below, within_reach);
+  params.local_flips.mend_below_at_last = std::min(params.local_flips.mend_below_at_last, within_reach);
   UmResult before;
   before.manifold_flips = chosen.manifold_flips;
   before.n_psi_evaluations = chosen.n_psi_evaluations;
   auto made = std::make_shared<PiecewiseMesh>(fit_piecewise_mesh(body.domain, background, std::move(chosen),
                                                                  body.graph ? &*body.graph : nullptr,
-                                                                 piecewise_params(options), context));
+                                                                 params, context));
   before.status = made->status;
   before.evidence = made->evidence;
   before.submesh = std::move(made->chosen);

@@ -25,8 +25,10 @@ struct PiecewiseFit {
   std::shared_ptr<PiecewiseMesh> features;  ///< its vertices and faces are those of the result, which has its tets
 };
 
-/// fit_piecewise_mesh() of the body. \throw Cancelled
+/// fit_piecewise_mesh() of the body.
+/// @param within_reach  mean ratio that tets of this body can reach: flips leave tets that are better
+/// \throw Cancelled
 PiecewiseFit fit_piecewise(const PiecewiseBody& body, const BackgroundMesh& background, ChosenSubmesh chosen,
-                           const MeshOptions& options, const Context& context = {});
+                           const MeshOptions& options, double within_reach, const Context& context = {});
 
 }  // namespace umtet

@@ -10,6 +10,7 @@
 #include "body/errors.h"
 #include "body/option_names.h"
 #include "body/sizing/mesh_memory.h"
+#include "body/sizing/thick_body.h"
 #include "common/formatted.h"
 #include "mesh/background/a15_box.h"
 #include "mesh/base/id_set.h"
@@ -26,6 +27,11 @@ constexpr double kWorthIt = 2;
 // Where sizes follow the features of a body with sharp edges, flips make graded tets as good: it is enough if they are
 // this much fewer.
 constexpr double kWorthItAtEdges = 1.25;
+// A body is thin nearly everywhere if this share of its surface is.
+constexpr double kMostOfThinBody = .8;
+constexpr double kTetsOfThinBody = 120'000;
+// Edges across the thickness of such a body, at least: with fewer its tets have a least Q below .4.
+constexpr double kThinnest = .55;
 
 }  // namespace
 
@@ -104,6 +110,16 @@ void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, 
   uniform_tets_ = uniform;
 }
 
+/// The least size on the features. A body that is thin nearly everywhere has larger edges, up to kThinnest of its
+/// thickness, where it would have more than kTetsOfThinBody tets.
+double BackgroundChoice::one_h_by_edges(const Domain& domain, const Context& context) const {
+  const double h = least_edged_size(domain, options_.mesh, context);
+  const double h_of_few = h_for_tets(*tiling_, domain.size(), kTetsOfThinBody, source_);
+  if (!(h_of_few > h)) return h;
+  const double thickness = triangle_thickness(domain, 2 * kEdgesAcross * h, context).share(kMostOfThinBody);
+  return thickness < kEdgesAcross * h ? std::min(h_of_few, thickness / kThinnest) : h;
+}
+
 /// The least size on the features of a body of triangles with sharp edges, as one h or, if that takes a quarter more tets,
 /// the least of varying sizes.
 EdgeLength BackgroundChoice::edge_length_by_edges(Domain& domain, const Context& context) {
@@ -112,7 +128,7 @@ EdgeLength BackgroundChoice::edge_length_by_edges(Domain& domain, const Context&
   const double h = sizes.finest();
   Known graded{h, std::make_shared<const SizeField>(sizes.field(h, context)), {}};
   graded.n_tets = expected_graded_tets(*graded.sizes, h, domain.psi(), domain.box, domain.steepest(), context);
-  const double one = least_edged_size(domain, options_.mesh, context);
+  const double one = one_h_by_edges(domain, context);
   const double uniform = umtet::expected_tets(*tiling_, domain.size(), one, source_);
   is_decided_ = true;
   if (uniform <= kWorthItAtEdges * *graded.n_tets && uniform <= static_cast<double>(options_.mesh.max_tets))

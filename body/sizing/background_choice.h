@@ -77,6 +77,7 @@ class BackgroundChoice {
 
  private:
   bool may_be_graded(const Domain& domain) const;
+  double one_h_by_edges(const Domain& domain, const Context& context) const;
   EdgeLength edge_length_by_edges(Domain& domain, const Context& context);
   void grade_if_worth_it(Domain& domain, const EdgeLength& one, const Context& context);
   EdgeLength graded_edge_length(const Domain& domain, const Context& context) const;
