@@ -11,8 +11,8 @@ namespace {
 // Of the diagonal: lower triangles have no certain normal. STL files store coordinates with 24 bits.
 constexpr double kSliver = 1e-6;
 
-// A sample of a closed surface may be taken to be inside where the winding number is not exact, as in a narrow groove.
-// Where bodies overlap, or have inner walls, more of the area is inside.
+// Samples of a closed surface may be taken to be inside where the winding number is not exact, as in a narrow groove.
+// Where bodies overlap, or have inner walls, there are several pieces, and more of the area is inside.
 constexpr double kFewInside = .01;
 
 /// Returns whether at most a small share of the area is on triangles that are partly inside.
@@ -49,8 +49,9 @@ TriangleMesh whole_triangles(const TriangleMesh& mesh) {
 std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift, double sure_turn) {
   for (Vec3& x : mesh.V) x -= shift;
   SurfaceDistance distance(mesh.V, mesh.F);
-  const bool is_on = is_on_boundary(mesh);
-  const TriangleBody body = measure_body(is_on ? TriangleMesh{mesh.V, mesh.F} : mesh);
+  const TriangleBody of_all = measure_body({mesh.V, mesh.F});
+  const bool is_on = is_on_boundary(mesh) || (of_all.n_pieces == 1 && of_all.is_manifold);
+  const TriangleBody body = is_on ? of_all : measure_body(mesh);
   const bool is_whole = is_on && body.is_closed && body.is_manifold;
   TriangleMesh whole = is_whole ? TriangleMesh{mesh.V, mesh.F} : whole_triangles(mesh);
   remove_slivers(whole, kSliver * diagonal_of(whole));
