@@ -32,9 +32,9 @@ inline constexpr Option box{"box"};
 inline constexpr Option accept{"verdict.accept"};
 
 /// All options, so that a test can check the names that front ends give them.
-inline constexpr Option kAll[] = {keep_all,   normals, merge,       flip,          viewpoints,   columns,
-                                  close,      edges, h,       tets,        max_deviation, max_tets,     background,
-                                  grade,      h_min,   h_max,       max_turn,      grade_inside, box_walls,
-                                  complement, sizes,   label_sizes, box,           accept,       sample_spacing};
+inline constexpr Option kAll[] = {keep_all,    normals, merge,    flip,          viewpoints, columns,    close,
+                                  edges,       h,       tets,     max_deviation, max_tets,   background, grade,
+                                  h_min,       h_max,   max_turn, grade_inside,  box_walls,  complement, sizes,
+                                  label_sizes, box,     accept,   sample_spacing};
 
 }  // namespace umtet::option

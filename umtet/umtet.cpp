@@ -210,8 +210,8 @@ std::optional<Mesh> mesh_with_edges(const SampledTriangles& triangles, const Opt
   auto given = given_triangles(triangles.boundary, shift, options.body.fit.feature_angle);
   auto body = edged_body(*given);
   if (!body) return std::nullopt;
-  Domain domain = edged_domain(std::move(given), std::move(body), triangles.samples.cloud, shift, options.box,
-                               options.body.mesh.h);
+  Domain domain =
+      edged_domain(std::move(given), std::move(body), triangles.samples.cloud, shift, options.box, options.body.mesh.h);
   LevelSetReport report;
   report.fit.n_points = triangles.report.n_samples;
   domain.cloud_spacing = report.fit.cloud_spacing = triangles.report.spacing;
@@ -239,8 +239,7 @@ FittedBody fit_body(TriangleMesh triangles, const Options& options) {
 
 Mesh mesh_body(const FittedBody& body, const Options& options) {
   Domain domain = fitted_domain(body.psi, body.cloud, body.report, options.box);
-  if (body.boundary)
-    domain.triangles = given_triangles(*body.boundary, domain.shift, options.body.fit.feature_angle);
+  if (body.boundary) domain.triangles = given_triangles(*body.boundary, domain.shift, options.body.fit.feature_angle);
   domain.facts = body.facts;
   domain.notices = body.notices;
   return mesh_of(std::move(domain), options);

@@ -24,8 +24,8 @@ std::shared_ptr<const PiecewiseBody> edged_body(const GivenTriangles& triangles)
   if (!triangles.is_whole || triangles.edges.curves.empty()) return nullptr;
   std::optional<TriangleDomain> made = triangle_domain(triangles.whole, triangles.edges);
   if (!made) return nullptr;
-  return std::make_shared<const PiecewiseBody>(PiecewiseBody{std::move(made->domain), std::move(made->graph), std::move(made->curvature),
-                                                              made->tolerance});
+  return std::make_shared<const PiecewiseBody>(
+      PiecewiseBody{std::move(made->domain), std::move(made->graph), std::move(made->curvature), made->tolerance});
 }
 
 Domain edged_domain(std::shared_ptr<const GivenTriangles> triangles, std::shared_ptr<const PiecewiseBody> body,

@@ -21,8 +21,8 @@
 namespace umtet {
 namespace {
 
-// Of the diagonal, of a vertex from its plane, sphere, cylinder or cone. STL files store coordinates with 24 bits: 6e-8 of
-// their size.
+// Of the diagonal, of a vertex from its plane, sphere, cylinder or cone. STL files store coordinates with 24 bits: 6e-8
+// of their size.
 constexpr double kVertexTolerance = 1e-6;
 // Of the diagonal, of the facets: half of the deviation that is asked of the faces of a mesh by default.
 constexpr double kFacetTolerance = 2.5e-4;
@@ -32,7 +32,7 @@ constexpr int kPointsAnEdge = 4;
 constexpr double kMostCos = .966;
 constexpr int kMostNewton = 20;
 constexpr double kConverged = 1e-13;  // of the coordinates
-constexpr int kParts = 3;  // of a curve that returns to its corner
+constexpr int kParts = 3;             // of a curve that returns to its corner
 
 /// A sharp edge and what is on its sides.
 struct SharpSide {
@@ -63,8 +63,8 @@ class Surface {
   const SharpSide& side(int a, int b) const { return sharp_.at(edge_of(a, b)); }
   const std::vector<int>& patches_at(int vertex) const { return at_[first_[vertex]].patches; }
   ActivePatch psi(const Vec3& x) const;
-  /// Moves x to the common zero of two patches, by the shortest steps. \return whether there is one near x, and one of the
-  /// patches is exact
+  /// Moves x to the common zero of two patches, by the shortest steps. \return whether there is one near x, and one of
+  /// the patches is exact
   bool correct(const std::array<int, 2>& pair, Vec3& x) const;
 
  private:
@@ -89,7 +89,7 @@ class Surface {
   std::vector<PatchFunction> patches_;
   std::vector<double> curvature_;       ///< per patch, as TriangleDomain::curvature
   std::vector<std::uint8_t> is_exact_;  ///< per patch: a plane, sphere, cylinder or cone
-  double farthest_ = 0;  ///< of points of the file from the common zeros of exact patches, model units
+  double farthest_ = 0;                 ///< of points of the file from the common zeros of exact patches, model units
   bool is_closed_ = true;
 };
 
@@ -244,7 +244,8 @@ class GraphMaker {
     graph_.curves.push_back(std::move(curve));
   }
 
-  /// The common zero set of two patches, if one is exact: the points of the file, which are on chords, and more between them.
+  /// The common zero set of two patches, if one is exact: the points of the file, which are on chords, and more between
+  /// them.
   void refine(FeatureCurve& curve) const {
     FeatureCurve fine = curve;
     fine.is_given = false;

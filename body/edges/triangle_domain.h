@@ -22,10 +22,10 @@ struct TriangleDomain {
 /// The domain inside of some triangles, with one function for each smooth patch.
 ///
 /// A patch whose vertices lie on a plane, sphere, cylinder or cone within 1e-6 of the diagonal, and its facets within
-/// 2.5e-4, is that surface (patch_primitive.h); any other patch is its triangles (patch_surface.h). psi(x) is the function of the patch of the triangle nearest to x. Where the nearest point is on a
-/// sharp edge, psi is the maximum of the functions of its two patches if the edge is convex, else the minimum; where it
-/// is a vertex of a curve, psi is the distance from it, with the sign of the angle-weighted normal of all triangles
-/// around [Baerentzen2005].
+/// 2.5e-4, is that surface (patch_primitive.h); any other patch is its triangles (patch_surface.h). psi(x) is the
+/// function of the patch of the triangle nearest to x. Where the nearest point is on a sharp edge, psi is the maximum
+/// of the functions of its two patches if the edge is convex, else the minimum; where it is a vertex of a curve, psi is
+/// the distance from it, with the sign of the angle-weighted normal of all triangles around [Baerentzen2005].
 ///
 /// The curves are those of `edges`, as polylines; where two patches meet at 15 degrees or more, and one of them is no
 /// triangles, they are the common zero sets. Curves that return to a corner are divided in three.

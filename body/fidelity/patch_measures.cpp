@@ -64,12 +64,12 @@ std::vector<int> patches_by_position(const PiecewiseDomain& body, const std::vec
 
 std::vector<int> patches_by_position(const Domain& domain, const std::vector<Vec3>& V,
                                      const std::vector<Triangle>& faces, double h, const Context& context) {
-  return patches_by_position(domain.piecewise->domain, V, faces, kOnPatch * h + coordinate_rounding(domain) + domain.piecewise->tolerance, context);
+  return patches_by_position(domain.piecewise->domain, V, faces,
+                             kOnPatch * h + coordinate_rounding(domain) + domain.piecewise->tolerance, context);
 }
 
-void measure_against_patches(const PiecewiseBody& of, const std::vector<Vec3>& V,
-                             const std::vector<Triangle>& faces, const std::vector<int>& patch, const Context& context,
-                             MeshCertificate& certificate) {
+void measure_against_patches(const PiecewiseBody& of, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                             const std::vector<int>& patch, const Context& context, MeshCertificate& certificate) {
   const PiecewiseDomain& body = of.domain;
   std::vector<std::pair<int, int>> vertices;  // and a patch
   for (std::size_t f = 0; f < faces.size(); ++f)

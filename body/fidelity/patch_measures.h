@@ -28,8 +28,7 @@ std::vector<int> patches_by_position(const Domain& domain, const std::vector<Vec
 /// @param patch        per face; -1: psi as a whole
 /// @param certificate  of the same mesh, without psi
 /// \throw Cancelled
-void measure_against_patches(const PiecewiseBody& body, const std::vector<Vec3>& V,
-                             const std::vector<Triangle>& faces, const std::vector<int>& patch, const Context& context,
-                             MeshCertificate& certificate);
+void measure_against_patches(const PiecewiseBody& body, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+                             const std::vector<int>& patch, const Context& context, MeshCertificate& certificate);
 
 }  // namespace umtet

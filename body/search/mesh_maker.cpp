@@ -115,8 +115,7 @@ KnownSigns MeshMaker::known_signs(const BackgroundMesh& background, const ZeroSe
 /// None where the body is as thick as the tets need it, or may not be thickened.
 const TriangleThickness* MeshMaker::thin_triangles(const BackgroundMesh& background, const ZeroSetChoice& pieces,
                                                    double h) {
-  if (!may_be_thickened(domain_, options_) || ranks_ || !background.is_lattice() ||
-      !pieces.dropped.empty())
+  if (!may_be_thickened(domain_, options_) || ranks_ || !background.is_lattice() || !pieces.dropped.empty())
     return nullptr;
   if (!thickness_ || thickness_->first < h) thickness_ = {h, triangle_thickness(domain_, kEdgesAcross * h, context_)};
   return thickness_->second.share(0) < kEdgesAcross * h ? &thickness_->second : nullptr;
@@ -146,8 +145,9 @@ MeshAttempt MeshMaker::begin(const SizedBackground& background, double h) {
 
 /// Of the same psi, and the same pieces of it.
 bool MeshMaker::may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces) const {
-  return params_.mode == UmMode::Fast && !domain_.piecewise && former.made() && former.background && former.n_levels == n_levels_ &&
-         former.n_pieces == pieces.seeds.size() && former.n_dropped == pieces.dropped.size();
+  return params_.mode == UmMode::Fast && !domain_.piecewise && former.made() && former.background &&
+         former.n_levels == n_levels_ && former.n_pieces == pieces.seeds.size() &&
+         former.n_dropped == pieces.dropped.size();
 }
 
 ChosenSubmesh MeshMaker::choose(const BackgroundMesh& background, const ZeroSetChoice& pieces,
@@ -204,8 +204,8 @@ MeshMaker::Begun MeshMaker::choose(const SizedBackground& background, double h, 
 void MeshMaker::fit_edges(const SizedBackground& background, ChosenSubmesh chosen, MeshAttempt& a) {
   const double within_reach =
       is_thickened_ ? kFlipsGain + quality_within_reach(thickness_->second.share(kMostlyThin), a.h) : 1;
-  PiecewiseFit made = fit_piecewise(*domain_.piecewise, background.mesh, std::move(chosen), options_.mesh,
-                                    within_reach, context_.part(kFit, kCertificate));
+  PiecewiseFit made = fit_piecewise(*domain_.piecewise, background.mesh, std::move(chosen), options_.mesh, within_reach,
+                                    context_.part(kFit, kCertificate));
   a.result = std::move(made.result);
   round_to_file(a.result, domain_.shift);
   if (!a.made()) return;

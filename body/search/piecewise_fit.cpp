@@ -72,8 +72,7 @@ PiecewiseFit fit_piecewise(const PiecewiseBody& body, const BackgroundMesh& back
   before.manifold_flips = chosen.manifold_flips;
   before.n_psi_evaluations = chosen.n_psi_evaluations;
   auto made = std::make_shared<PiecewiseMesh>(fit_piecewise_mesh(body.domain, background, std::move(chosen),
-                                                                 body.graph ? &*body.graph : nullptr,
-                                                                 params, context));
+                                                                 body.graph ? &*body.graph : nullptr, params, context));
   before.status = made->status;
   before.evidence = made->evidence;
   before.submesh = std::move(made->chosen);

@@ -30,8 +30,11 @@ constexpr double kWorthItAtEdges = 1.25;
 // A body is thin nearly everywhere if this share of its surface is.
 constexpr double kMostOfThinBody = .8;
 constexpr double kTetsOfThinBody = 120'000;
-// Edges across the thickness of such a body, at least: with fewer its tets have a least Q below .4.
-constexpr double kThinnest = .55;
+// Edges across the thickness of such a body, at least: with .55 a box with walls of .5 in 100 lacks half of its edges.
+constexpr double kThinnest = .8;
+// It is no longer worth the tets if they are far more than kTetsOfThinBody: the square of this, because they are as
+// many as its area has faces.
+constexpr double kFarMore = 1.4;
 
 }  // namespace
 
@@ -110,18 +113,26 @@ void BackgroundChoice::grade_if_worth_it(Domain& domain, const EdgeLength& one, 
   uniform_tets_ = uniform;
 }
 
-/// The least size on the features. A body that is thin nearly everywhere has larger edges, up to kThinnest of its
-/// thickness, where it would have more than kTetsOfThinBody tets.
+/// The least size on the features. A body that is thin nearly everywhere has larger edges, up to 1 / kThinnest of its
+/// thickness, where it would have more than kTetsOfThinBody tets. \throw MeshingImpossible  it has far more even so
 double BackgroundChoice::one_h_by_edges(const Domain& domain, const Context& context) const {
   const double h = least_edged_size(domain, options_.mesh, context);
   const double h_of_few = h_for_tets(*tiling_, domain.size(), kTetsOfThinBody, source_);
   if (!(h_of_few > h)) return h;
   const double thickness = triangle_thickness(domain, 2 * kEdgesAcross * h, context).share(kMostOfThinBody);
-  return thickness < kEdgesAcross * h ? std::min(h_of_few, thickness / kThinnest) : h;
+  if (!(thickness < kEdgesAcross * h)) return h;
+  const double largest = thickness / kThinnest;
+  if (h_of_few > kFarMore * largest) {
+    throw MeshingImpossible(
+        formatted("the body is thin nearly everywhere: with its sharp edges it needs h = %.3g, about %.2g tets",
+                  largest, umtet::expected_tets(*tiling_, domain.size(), largest, source_)),
+        {{Change::Give, option::h}});
+  }
+  return std::min(h_of_few, largest);
 }
 
-/// The least size on the features of a body of triangles with sharp edges, as one h or, if that takes a quarter more tets,
-/// the least of varying sizes.
+/// The least size on the features of a body of triangles with sharp edges, as one h or, if that takes a quarter more
+/// tets, the least of varying sizes.
 EdgeLength BackgroundChoice::edge_length_by_edges(Domain& domain, const Context& context) {
   GradedSizes sizes(options_, domain.shift);
   sizes.add(domain, context);

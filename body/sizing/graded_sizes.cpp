@@ -12,8 +12,8 @@
 #include "body/edges/feature_sizes.h"
 #include "body/errors.h"
 #include "body/option_names.h"
-#include "body/piecewise_body.h"
 #include "body/pieces/zero_set_choice.h"
+#include "body/piecewise_body.h"
 #include "body/sizing/edge_length.h"
 #include "body/sizing/sheet_support.h"
 #include "common/formatted.h"
@@ -28,8 +28,8 @@ namespace {
 
 // Sizes fall to this share of h where nothing else says how far: edges that differ by 16 on the boundary.
 constexpr double kLeastOfH = 1. / 16;
-// Of a body with sharp edges, as shares of the diagonal: the largest size, because flat faces and straight edges ask for
-// no small tets, and the largest distance of a flat face from a curved patch.
+// Of a body with sharp edges, as shares of the diagonal: the largest size, because flat faces and straight edges ask
+// for no small tets, and the largest distance of a flat face from a curved patch.
 constexpr double kEdgedMeshEdge = .04, kEdgedDeviation = 5e-4;
 // Edges across its thin parts: 1.2 where the body is thickened before its vertices are chosen, and 1.7 where it is not,
 // as in graded meshes. With 1.2 the walls of .031 in featuretype.STL break through.
@@ -131,8 +131,8 @@ std::vector<SizeSource> edged_sizes(const Domain& domain, const MeshOptions& p, 
   if (p.h_max > 0) s.h = std::min(s.h, p.h_max);
   s.h_min = std::min(s.h, p.h_min > 0 ? p.h_min : kLeastOfEdgedH * s.h);
   s.edges_across = edges_across;
-  s.deviation = p.max_deviation > 0 ? p.max_deviation / (kSizeTolerance * kSizeTolerance)
-                                    : kEdgedDeviation * domain.diagonal;
+  s.deviation =
+      p.max_deviation > 0 ? p.max_deviation / (kSizeTolerance * kSizeTolerance) : kEdgedDeviation * domain.diagonal;
   const PiecewiseBody& body = *domain.piecewise;
   return feature_sizes(domain.triangles->whole, domain.triangles->edges, *body.graph, body.curvature, s, context);
 }
@@ -180,8 +180,7 @@ bool GradedSizes::add(Domain& domain, const Context& context, double most_tets) 
   s.deviation = p.max_deviation / (kSizeTolerance * kSizeTolerance);
   if (p.grade_inside) s.edges_across = s.max_turn = 0;
   std::optional<SheetSupport> support;
-  if (domain.level_set && !domain.cloud.points.empty() &&
-      domain.cloud.normals.size() == domain.cloud.points.size()) {
+  if (domain.level_set && !domain.cloud.points.empty() && domain.cloud.normals.size() == domain.cloud.points.size()) {
     s.is_known = std::cref(support.emplace(domain));
   }
   domain.limit_detail(s.h_min);

@@ -59,7 +59,7 @@ double best_wedge_quality(double angle_deg, int k);
 /// @param h      edge length at each vertex
 /// \throw Cancelled
 FeatureEmbedding embed_features(const PiecewiseDomain& domain, const FeatureGraph& graph, const std::vector<Vec3>& V,
-                                const std::vector<Tet>& C, const std::vector<Triangle>& faces, const std::vector<double>& h,
-                                const Context& context = {});
+                                const std::vector<Tet>& C, const std::vector<Triangle>& faces,
+                                const std::vector<double>& h, const Context& context = {});
 
 }  // namespace umtet

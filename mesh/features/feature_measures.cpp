@@ -65,7 +65,8 @@ FeatureMeasures measure_features(const PiecewiseDomain& domain, const PiecewiseM
   for (std::size_t c = 0; c < m.n_corners; ++c) {
     const int v = made.corner_vertex[c];
     m.n_missed_corners += v < 0 ? 1 : 0;
-    if (v >= 0) m.farthest_vertex = std::max(m.farthest_vertex, (V[v] - made.graph.corners[c].place).norm() / made.h[v]);
+    if (v >= 0)
+      m.farthest_vertex = std::max(m.farthest_vertex, (V[v] - made.graph.corners[c].place).norm() / made.h[v]);
   }
   m.n_curves = made.graph.curves.size();
   for (std::size_t c = 0; c < m.n_curves; ++c) {
@@ -77,9 +78,9 @@ FeatureMeasures measure_features(const PiecewiseDomain& domain, const PiecewiseM
       m.missed_length += curve.length();
       continue;
     }
-    for (const int v : chain) m.farthest_vertex = std::max(m.farthest_vertex, strata.distance(made.stratum[v], V[v]) / made.h[v]);
-    for (const Vec3& x : curve.points)
-      m.farthest_point = std::max(m.farthest_point, distance_to_chain(made, chain, x));
+    for (const int v : chain)
+      m.farthest_vertex = std::max(m.farthest_vertex, strata.distance(made.stratum[v], V[v]) / made.h[v]);
+    for (const Vec3& x : curve.points) m.farthest_point = std::max(m.farthest_point, distance_to_chain(made, chain, x));
     for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
       const auto [low, high] = std::minmax(chain[k], chain[k + 1]);
       const auto at = faces.find({low, high});

@@ -19,8 +19,8 @@ struct FeatureMeasures {
   std::size_t n_faces_without_patch = 0;
 };
 
-/// Measures the features of a mesh against its domain, from the faces and chains of the mesh alone. Distances are in the
-/// edge length of the background at the vertex.
+/// Measures the features of a mesh against its domain, from the faces and chains of the mesh alone. Distances are in
+/// the edge length of the background at the vertex.
 FeatureMeasures measure_features(const PiecewiseDomain& domain, const PiecewiseMesh& mesh);
 
 }  // namespace umtet

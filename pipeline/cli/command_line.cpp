@@ -118,12 +118,12 @@ CommandParser::CommandParser() {
 
   add_batch();
 
-  CLI::App& inspect =
-      add_command("inspect", make_inspect, "Report the contents of a cloud, an image or a formula, and likely problems");
-  inspect
-      .add_option("CLOUD", in_.input,
-                  "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; image: .nii, .nrrd, "
-                  ".vti, .vtk, also .gz; or --implicit with --box");
+  CLI::App& inspect = add_command("inspect", make_inspect,
+                                  "Report the contents of a cloud, an image or a formula, and likely problems");
+  inspect.add_option(
+      "CLOUD", in_.input,
+      "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; image: .nii, .nrrd, "
+      ".vti, .vtk, also .gz; or --implicit with --box");
   add_parameter_sources(inspect);
   for (const ParamField& f : params_fields()) {  // the reading of a text, and the prediction
     if (f.key == keys::cloud::columns || f.key == keys::mesh::h || f.key == keys::mesh::tets ||

@@ -34,7 +34,7 @@ struct BatchCommand {
 
 struct InspectCommand {
   std::filesystem::path cloud;  ///< empty: mesh.implicit
-  Parameters parameters;  ///< parameters of the predicted run
+  Parameters parameters;        ///< parameters of the predicted run
 };
 
 struct CheckCommand {

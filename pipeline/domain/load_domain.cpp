@@ -96,8 +96,8 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
       domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift,
                                          parameters.reconstruct().feature_angle);
     } else if (cloud_state.record && is_of_triangles(paths, *cloud_state.record)) {
-      domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift,
-                                         parameters.reconstruct().feature_angle);
+      domain.triangles =
+          given_triangles(read_triangles(paths.triangles()).mesh, domain.shift, parameters.reconstruct().feature_angle);
     }
     if (domain.triangles) domain.level_shift = level_shift_of(paths);
   } catch (const CloudRefused& e) {  // umtet wrote all files, so an error in them is damage

@@ -91,8 +91,8 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
 void add_sharp_edges(const EdgedTriangles& edged, SampledTriangles& triangles, std::vector<std::string>& troubles) {
   const SharpEdges& edges = edged.triangles->edges;
   if (edges.curves.empty()) return;
-  const std::string found = fmt::format("{} sharp edges, {} corners, {} patches, a length of {:.4g}", edges.curves.size(),
-                                        edges.corners.size(), edges.n_patches, edges.length());
+  const std::string found = fmt::format("{} sharp edges, {} corners, {} patches, a length of {:.4g}",
+                                        edges.curves.size(), edges.corners.size(), edges.n_patches, edges.length());
   if (edged.body) {
     triangles.notices.emplace_back(found + ": each patch gets a function of its own, and the mesh has the edges");
   } else {

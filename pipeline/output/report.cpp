@@ -170,8 +170,7 @@ SolverMesh divided(const CasePaths& paths, const MeshFile& mesh, const Domain& d
   mark_patches(domain, made, made.nodes, measured.mesh.h, marked);
   try {
     divide_boundary(
-        made, marked, domain.cloud, parameters, [](const std::string&) {},
-        label_names_of_file(paths));
+        made, marked, domain.cloud, parameters, [](const std::string&) {}, label_names_of_file(paths));
   } catch (const UsageError&) {
     // An export refuses names for labels that do not exist; here all faces then stay one patch.
   }
@@ -199,7 +198,8 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
   Figures figures;
   tbb::parallel_invoke(
       [&] {
-        scene = report_scene(mesh, *handover.domain, divided(paths, mesh, *handover.domain, parameters, certificate.measured));
+        scene = report_scene(mesh, *handover.domain,
+                             divided(paths, mesh, *handover.domain, parameters, certificate.measured));
       },
       [&] { figures = figures_of(paths, parameters, mesh, certificate); });
   stop_if_interrupted();

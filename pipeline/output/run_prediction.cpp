@@ -118,8 +118,8 @@ RunPrediction predict_run(CloudFile scan, const std::filesystem::path& file, con
 }
 
 RunPrediction predict_run(const EdgedTriangles& edged, const Parameters& parameters, const Context& context) {
-  Domain domain = edged_domain(edged.triangles, edged.body, {}, edged.shift, parse_box(parameters.mesh().box),
-                               parameters.mesh().h);
+  Domain domain =
+      edged_domain(edged.triangles, edged.body, {}, edged.shift, parse_box(parameters.mesh().box), parameters.mesh().h);
   BackgroundChoice background(body_options(parameters), domain);
   const double h = background.edge_length(domain, context).h, n_tets = background.expected_tets(domain, h);
   RunPrediction run = prediction_of(h, n_tets, 0, parameters);

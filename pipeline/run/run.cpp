@@ -141,11 +141,11 @@ void CaseRun::smooth_edges() {
   if (is_derived && parameters_.origin(key) != kLostEdges) parameters_.drop(key);
   if (parameters_.source(key) > ParamSource::Case || request_.until != Stage::Mesh) return;
   const MeshParameters& mesh = parameters_.mesh();
-  const char* why = mesh.order > 1                   ? "for --order 2"
-                    : mesh.mode == UmMode::Paper     ? "for --mode paper"
-                    : mesh.box_walls                 ? "for --box-walls"
-                    : background_file(parameters_)    ? "for --background"
-                                                     : nullptr;
+  const char* why = mesh.order > 1                 ? "for --order 2"
+                    : mesh.mode == UmMode::Paper   ? "for --mode paper"
+                    : mesh.box_walls               ? "for --box-walls"
+                    : background_file(parameters_) ? "for --background"
+                                                   : nullptr;
   if (why) parameters_.set(key, "off", ParamSource::Derived, why);
 }
 
@@ -359,8 +359,9 @@ std::vector<StageRecord> CaseRun::make_all() {
     failure = text_of(e.message, as_flag);
   }
   if (failure.empty()) return records;
-  progress_.warn("mesh: with sharp edges it fails (" + failure +
-                 "); making it again from one smooth level set, which rounds them (--edges auto shows the one that fails)");
+  progress_.warn(
+      "mesh: with sharp edges it fails (" + failure +
+      "); making it again from one smooth level set, which rounds them (--edges auto shows the one that fails)");
   parameters_.set(keys::reconstruct::edges, "off", ParamSource::Derived, kLostEdges);
   records.clear();
   for (const Stage stage : stages()) records.push_back(ensure(stage));

@@ -89,9 +89,10 @@ void run_level_set_stage(const StageContext& context) {
   const std::vector<RecordedFile> inputs = recorded_inputs(context.paths, Stage::LevelSet, context.parameters);
   if (EdgedTriangles edged = edges_to_keep(context); edged.body) {
     const FeatureGraph& graph = *edged.body->graph;
-    context.progress.say(fmt::format("level-set: {} sharp edges, {} corners, {} patches: each patch has a function of "
-                                     "its own (--edges off makes one smooth level set)",
-                                     graph.curves.size(), graph.corners.size(), edged.body->domain.n_patches()));
+    context.progress.say(
+        fmt::format("level-set: {} sharp edges, {} corners, {} patches: each patch has a function of "
+                    "its own (--edges off makes one smooth level set)",
+                    graph.curves.size(), graph.corners.size(), edged.body->domain.n_patches()));
     begin_writing(context, Stage::LevelSet);
     write_record_of(context, inputs, write_edges(context, edged), start, kFeatureFile);
     context.handover.edged = std::move(edged);

@@ -7,8 +7,8 @@
 namespace umtet {
 
 /// Removes triangles that are lower than a tolerance, whose normals are rounding. A triangle with a side shorter than
-/// the tolerance collapses into an edge. In any other, a corner lies on the opposite side: that side is flipped, and the
-/// corner becomes one of the neighbour. The surface moves by no more than the tolerance, and its topology stays.
+/// the tolerance collapses into an edge. In any other, a corner lies on the opposite side: that side is flipped, and
+/// the corner becomes one of the neighbour. The surface moves by no more than the tolerance, and its topology stays.
 ///
 /// Vertices at one position become one vertex. Triangles at edges of one, three and more triangles stay as they are.
 /// @param tolerance  model units

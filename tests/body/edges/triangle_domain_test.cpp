@@ -118,7 +118,8 @@ TEST(TriangleDomain, MeshesHaveEveryEdgeInAnyPosition) {
 }
 
 TEST(TriangleDomain, PsiHasTheSignOfTheWindingNumberAndIsADistance) {
-  for (const TriangleMesh& mesh : {placed(ell(), random_placement(5, 1)), placed(cylinder(12), random_placement(6, 1))}) {
+  for (const TriangleMesh& mesh :
+       {placed(ell(), random_placement(5, 1)), placed(cylinder(12), random_placement(6, 1))}) {
     const auto body = triangle_domain(mesh, find_sharp_edges(mesh));
     ASSERT_TRUE(body);
     const TriangleWinding winding(mesh);
@@ -132,7 +133,7 @@ TEST(TriangleDomain, PsiHasTheSignOfTheWindingNumberAndIsADistance) {
         x[a] = box.min()[a] + box.sizes()[a] * static_cast<double>(random()) / static_cast<double>(random.max());
       const double psi = body->domain.value(x), distance = tree.nearest(x).distance;
       if (distance < 1e-3) continue;
-      EXPECT_EQ(psi < 0, winding(x) > .5) << x.transpose();
+      EXPECT_EQ(psi<0, winding(x)> .5) << x.transpose();
       EXPECT_LE(std::abs(psi), distance + 1e-9);
       n_inside += psi < 0 ? 1 : 0;
     }
@@ -177,7 +178,8 @@ TEST(FeatureSizes, FollowThicknessAndCurves) {
   }
   const TriangleMesh cube = test::cube();
   const auto thick = triangle_domain(cube, find_sharp_edges(cube));
-  for (const SizeSource& s : feature_sizes(cube, find_sharp_edges(cube), thick->graph, thick->curvature, params)) EXPECT_EQ(s.h, .2);
+  for (const SizeSource& s : feature_sizes(cube, find_sharp_edges(cube), thick->graph, thick->curvature, params))
+    EXPECT_EQ(s.h, .2);
   // Around a cylinder of radius 1: sqrt(8 d R).
   const TriangleMesh round = cylinder(96);
   const auto turned = triangle_domain(round, find_sharp_edges(round));

@@ -238,5 +238,10 @@ TEST(Expression, ThreadsSeeTheSameFunction) {
   for (int i = 0; i < n; ++i) ASSERT_EQ(parallel[i], psi.value(point(i)));
 }
 
+TEST(Expression, BlanksAndLineBreaksDoNotCount) {
+  const Vec3 x(.3, -.2, .7);
+  EXPECT_EQ(Expression("x ^2\n\t+ y*\r\n z").value(x), Expression("x^2+y*z").value(x));
+}
+
 }  // namespace
 }  // namespace umtet

@@ -63,23 +63,22 @@ struct Case {
   std::function<Vec3(double, double)> at;
 };
 
-const Case kCases[] = {
-    {"plane", PatchPrimitive::Kind::Plane, [](double u, double v) { return Vec3(u, 2 * v, 0); }},
-    {"cylinder", PatchPrimitive::Kind::Cylinder,
-     [](double u, double v) { return Vec3(std::cos(2 * u), std::sin(2 * u), 3 * v); }},
-    {"whole_cylinder", PatchPrimitive::Kind::Cylinder,
-     [](double u, double v) { return Vec3(std::cos(2 * M_PI * u), std::sin(2 * M_PI * u), 3 * v); }},
-    {"hole", PatchPrimitive::Kind::Cylinder,
-     [](double u, double v) { return Vec3(std::cos(2 * u), -std::sin(2 * u), 3 * v); }},
-    {"cone", PatchPrimitive::Kind::Cone,
-     [](double u, double v) {
-       const double r = 2 - v;
-       return Vec3(r * std::cos(2 * u), r * std::sin(2 * u), 2 * v);
-     }},
-    {"sphere", PatchPrimitive::Kind::Sphere, [](double u, double v) {
-       const double a = 2 * u, b = v - .5;
-       return Vec3(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
-     }}};
+const Case kCases[] = {{"plane", PatchPrimitive::Kind::Plane, [](double u, double v) { return Vec3(u, 2 * v, 0); }},
+                       {"cylinder", PatchPrimitive::Kind::Cylinder,
+                        [](double u, double v) { return Vec3(std::cos(2 * u), std::sin(2 * u), 3 * v); }},
+                       {"whole_cylinder", PatchPrimitive::Kind::Cylinder,
+                        [](double u, double v) { return Vec3(std::cos(2 * M_PI * u), std::sin(2 * M_PI * u), 3 * v); }},
+                       {"hole", PatchPrimitive::Kind::Cylinder,
+                        [](double u, double v) { return Vec3(std::cos(2 * u), -std::sin(2 * u), 3 * v); }},
+                       {"cone", PatchPrimitive::Kind::Cone,
+                        [](double u, double v) {
+                          const double r = 2 - v;
+                          return Vec3(r * std::cos(2 * u), r * std::sin(2 * u), 2 * v);
+                        }},
+                       {"sphere", PatchPrimitive::Kind::Sphere, [](double u, double v) {
+                          const double a = 2 * u, b = v - .5;
+                          return Vec3(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
+                        }}};
 
 TEST(PatchPrimitive, EachSurfaceIsRecognisedFromItsFacets) {
   for (const Case& c : kCases) {

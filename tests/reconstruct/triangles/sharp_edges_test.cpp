@@ -133,8 +133,7 @@ TEST(SharpEdges, ACurveHasKinksAtAChamferAndNoneOnAnArc) {
   EXPECT_EQ(chamfer.corners.size(), 10u);
   // A quarter of a circle of eight chords is no kink.
   std::vector<Eigen::Vector2d> round = {{0, 0}, {2, 0}};
-  for (int k = 0; k <= 8; ++k)
-    round.emplace_back(1 + std::cos(k * M_PI / 16), .2 + std::sin(k * M_PI / 16));
+  for (int k = 0; k <= 8; ++k) round.emplace_back(1 + std::cos(k * M_PI / 16), .2 + std::sin(k * M_PI / 16));
   round.emplace_back(0, 1.2);
   const SharpEdges arc = find_sharp_edges(prism(round));
   EXPECT_EQ(arc.corners.size(), 6u);

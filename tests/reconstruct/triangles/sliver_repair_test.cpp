@@ -21,7 +21,8 @@ double least_height(const TriangleMesh& mesh) {
   return least;
 }
 
-/// Divides the first triangle at a point `off` beside the middle of its first side: a cap, whose neighbour keeps its side.
+/// Divides the first triangle at a point `off` beside the middle of its first side: a cap, whose neighbour keeps its
+/// side.
 TriangleMesh with_cap(TriangleMesh mesh, double off) {
   const Triangle t = mesh.F[0];
   const Vec3 middle = (mesh.V[t[0]] + mesh.V[t[1]]) / 2;
