@@ -132,7 +132,7 @@ class PartCertificate {
   const VertexOwners owners_;
   PartBoundary boundary_;
   BoundaryTopology topology_;
-  std::vector<EnclosedVolume> volumes_;  ///< volumes of the pieces of the boundary
+  std::vector<ComponentVolume> volumes_;  ///< volumes of the pieces of the boundary
   MeshCertificate certificate_;
 };
 
@@ -179,7 +179,7 @@ void PartCertificate::measure_faces(OwnDistances* distances) {
         const auto piece = static_cast<std::size_t>(faces[i].piece);
         double* const of_piece = &so_far[1 + 3 * piece];
         of_piece[0] += face_area(a, b, c);
-        EnclosedVolume volume{of_piece[1], of_piece[2]};
+        ComponentVolume volume{of_piece[1], of_piece[2]};
         volume.add(vector(topology_.pieces[piece].corner), a, b, c);
         of_piece[1] = volume.sum;
         of_piece[2] = volume.magnitude;

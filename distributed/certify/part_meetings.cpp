@@ -152,7 +152,7 @@ std::size_t meetings_of_parts(MPI_Comm comm, const DistributedMesh& mesh, const 
 }
 
 std::size_t wrongly_nested_of_parts(MPI_Comm comm, const DistributedMesh& mesh, const PartBoundary& boundary,
-                                    const BoundaryTopology& topology, const std::vector<EnclosedVolume>& volumes) {
+                                    const BoundaryTopology& topology, const std::vector<ComponentVolume>& volumes) {
   std::vector<Vec3> corners;
   for (const BoundaryPiece& piece : topology.pieces)
     corners.emplace_back(piece.corner[0], piece.corner[1], piece.corner[2]);

@@ -21,6 +21,6 @@ std::size_t meetings_of_parts(MPI_Comm comm, const DistributedMesh& mesh, const 
 /// \pre the boundary is a closed manifold without self-intersections
 /// @param volumes  volumes of the components
 std::size_t wrongly_nested_of_parts(MPI_Comm comm, const DistributedMesh& mesh, const PartBoundary& boundary,
-                                    const BoundaryTopology& topology, const std::vector<EnclosedVolume>& volumes);
+                                    const BoundaryTopology& topology, const std::vector<ComponentVolume>& volumes);
 
 }  // namespace umtet

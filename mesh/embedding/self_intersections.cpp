@@ -9,7 +9,7 @@
 #include "mesh/base/check_indices.h"
 #include "mesh/core/orientation.h"
 #include "mesh/embedding/triangle_intersection.h"
-#include "mesh/embedding/triangle_tree.h"
+#include "mesh/embedding/box_tree.h"
 
 namespace umtet {
 namespace {
@@ -29,17 +29,17 @@ std::vector<Pair> gathered(const std::vector<std::vector<Pair>>& found) {
 }
 
 /// Appends the pairs that meet, one face of leaf k, the other at or behind it in the tree's order.
-void pairs_of_leaf(const TriangleTree& tree, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
+void pairs_of_leaf(const BoxTree& tree, const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                    std::size_t k, std::vector<Pair>& found) {
-  const TriangleTree::Range own = tree.leaf(k);
+  const BoxTree::Range own = tree.leaf(k);
   const auto& box = tree.leaf_box(k);
   const std::vector<int>& order = tree.order();
   tree.for_leaves(
-      k, [&](const TriangleTree::Box& other) { return other.intersects(box); },
+      k, [&](const BoxTree::Box& other) { return other.intersects(box); },
       [&](std::size_t leaf) {
-        const TriangleTree::Range range = tree.leaf(leaf);
+        const BoxTree::Range range = tree.leaf(leaf);
         for (int i = own.begin; i < own.end; ++i) {
-          const TriangleTree::Box& here = tree.box_at(i);
+          const BoxTree::Box& here = tree.box_at(i);
           for (int j = std::max(range.begin, i + 1); j < range.end; ++j) {
             if (!here.intersects(tree.box_at(j))) continue;
             const int f = std::min(order[i], order[j]), g = std::max(order[i], order[j]);
@@ -73,32 +73,32 @@ std::vector<Pair> self_intersections(const std::vector<Vec3>& V, const std::vect
                                      const Context& context) {
   check_indices(faces, V.size(), "face");
   if (faces.empty()) return {};
-  const TriangleTree tree(V, faces);
+  const BoxTree tree(V, faces);
   std::vector<std::vector<Pair>> found(tree.n_leaves());
   polled_parallel_for(tree.n_leaves(), kLeavesPerPoll, context,
                       [&](std::size_t k) { pairs_of_leaf(tree, V, faces, k, found[k]); });
   return gathered(found);
 }
 
-void EnclosedVolume::add(const Vec3& from, const Vec3& a, const Vec3& b, const Vec3& c) {
+void ComponentVolume::add(const Vec3& from, const Vec3& a, const Vec3& b, const Vec3& c) {
   const double six = (a - from).dot((b - from).cross(c - from));
   sum += six;
   magnitude += std::abs(six);
 }
 
-int EnclosedVolume::sign() const { return std::abs(sum) <= kVolumeRounding * magnitude ? 0 : sum > 0 ? 1 : -1; }
+int ComponentVolume::sign() const { return std::abs(sum) <= kVolumeRounding * magnitude ? 0 : sum > 0 ? 1 : -1; }
 
 std::vector<int> windings(const std::vector<Vec3>& V, const std::vector<Triangle>& faces,
                           const std::vector<int>& component, const std::vector<Vec3>& points, const Context& context) {
   check_indices(faces, V.size(), "face");
   std::vector<int> winding(points.size(), 0);
   if (faces.empty()) return winding;
-  const TriangleTree tree(V, faces);
+  const BoxTree tree(V, faces);
   polled_parallel_for(points.size(), kLeavesPerPoll, context, [&](std::size_t c) {
     const Vec3& x = points[c];
     tree.for_leaves(
         0,
-        [&](const TriangleTree::Box& box) {
+        [&](const BoxTree::Box& box) {
           return box.max().x() >= x.x() && box.min().y() <= x.y() && x.y() <= box.max().y() && box.min().z() <= x.z() &&
                  x.z() <= box.max().z();
         },
@@ -113,7 +113,7 @@ std::vector<int> windings(const std::vector<Vec3>& V, const std::vector<Triangle
   return winding;
 }
 
-bool is_wrongly_nested(const EnclosedVolume& volume, int winding) {
+bool is_wrongly_nested(const ComponentVolume& volume, int winding) {
   // The other surfaces around the outer side of this one; it adds 0 there if it is the outside of a body, and -1 if
   // it is the wall of a cavity.
   const int sign = volume.sign();
@@ -128,7 +128,7 @@ std::vector<int> wrongly_nested(const std::vector<Vec3>& V, const std::vector<Tr
   for (std::size_t i = faces.size(); i-- > 0;) first[component[i]] = static_cast<int>(i);
   std::vector<Vec3> corners;
   for (const int i : first) corners.push_back(V[faces[i][0]]);
-  std::vector<EnclosedVolume> volume(n_components);
+  std::vector<ComponentVolume> volume(n_components);
   for (std::size_t i = 0; i < faces.size(); ++i)
     volume[component[i]].add(corners[component[i]], V[faces[i][0]], V[faces[i][1]], V[faces[i][2]]);
   const std::vector<int> winding = windings(V, faces, component, corners, context);

@@ -31,7 +31,7 @@ std::vector<int> wrongly_nested(const std::vector<Vec3>& V, const std::vector<Tr
 // The steps of wrongly_nested(), for a surface that is distributed over processes.
 
 /// Six times the signed volume enclosed by a component, with the sum of the magnitudes of its terms.
-struct EnclosedVolume {
+struct ComponentVolume {
   double sum = 0, magnitude = 0;
 
   /// @param from  a corner of the first face of the component
@@ -44,6 +44,6 @@ std::vector<int> windings(const std::vector<Vec3>& V, const std::vector<Triangle
                           const std::vector<int>& component, const std::vector<Vec3>& points,
                           const Context& context = {});
 /// @param winding  winding number of all other components around a corner of the component
-bool is_wrongly_nested(const EnclosedVolume& volume, int winding);
+bool is_wrongly_nested(const ComponentVolume& volume, int winding);
 
 }  // namespace umtet

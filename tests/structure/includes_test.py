@@ -30,6 +30,16 @@ def is_forbidden(file, included, rules):
                for folder, (others, headers) in rules.items())
 
 
+def twice_defined(headers):
+    """Classes of one namespace that several headers define, by name."""
+    where = {}
+    for file, text in headers.items():
+        spaces = set(re.findall(r"^namespace ([\w:]+) \{", text, re.M))
+        for name in re.findall(r"^(?:class|struct) (\w+)(?: final)?\s*(?::[^;{]*)?\{", text, re.M):
+            where.setdefault((name, *sorted(spaces)), set()).add(file)
+    return {key[0]: sorted(files) for key, files in where.items() if len(files) > 1}
+
+
 def reach(folder, named, path=()):
     """A folder, what it names and what these may include. ValueError for a folder that comes back to itself."""
     if folder in path:
@@ -100,6 +110,14 @@ class Includes(unittest.TestCase):
             for path in files:
                 for included in re.findall(r"^\s*#\s*include\s+<([^>]+)>", path.read_text(), re.M):
                     self.assertFalse(included.startswith(outside), f"{path.relative_to(SOURCES)} includes <{included}>")
+
+    def test_no_two_classes_have_one_name(self):
+        # The linker keeps one destructor of two classes umtet::X, and frees the members of the other with it.
+        headers = {str(f.relative_to(SOURCES)): f.read_text() for top in TOPS for f in (SOURCES / top).rglob("*.h")}
+        self.assertEqual(twice_defined(headers), {})
+        self.assertEqual(twice_defined({"a.h": "namespace umtet {\nclass X {", "b.h": "namespace umtet {\nstruct X : Y {"}),
+                         {"X": ["a.h", "b.h"]})
+        self.assertEqual(twice_defined({"a.h": "namespace umtet {\nclass X {", "b.h": "namespace umtet::b {\nclass X {"}), {})
 
     def test_wrong_includes_are_found(self):
         named = declared("a: # all\nb: a\nb/c: a\nd: b")

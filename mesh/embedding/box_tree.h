@@ -10,12 +10,12 @@ namespace umtet {
 
 /// Bounding volume tree of triangles. Nodes are halved at the median of the longer axis of centroids; the shape is the
 /// same for any number of threads. Keeps references to its arguments.
-class TriangleTree {
+class BoxTree {
  public:
   using Box = Eigen::AlignedBox3d;
 
   /// \pre indices are in range. Cost: O(n log n), threads over halves
-  TriangleTree(const std::vector<Vec3>& V, const std::vector<Triangle>& faces);
+  BoxTree(const std::vector<Vec3>& V, const std::vector<Triangle>& faces);
 
   /// Triangles are stored in the order of the leaves; a leaf is a range of this order.
   std::size_t n_leaves() const { return leaves_.size(); }

@@ -1,4 +1,4 @@
-#include "mesh/embedding/triangle_tree.h"
+#include "mesh/embedding/box_tree.h"
 
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
@@ -15,7 +15,7 @@ constexpr int kWorthThreads = 1 << 13;
 
 }  // namespace
 
-TriangleTree::TriangleTree(const std::vector<Vec3>& V, const std::vector<Triangle>& faces)
+BoxTree::BoxTree(const std::vector<Vec3>& V, const std::vector<Triangle>& faces)
     : V_(V), faces_(faces), order_(faces.size()), triangle_boxes_(faces.size()) {
   std::size_t n_leaves = 1;
   while (n_leaves * kMostInLeaf < faces.size()) n_leaves *= 2;
@@ -29,7 +29,7 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& V, const std::vector<Triangl
   split(0, 0, static_cast<int>(faces.size()), centroid);
 }
 
-void TriangleTree::split(std::size_t node, int begin, int end, std::vector<Vec3>& centroid) {
+void BoxTree::split(std::size_t node, int begin, int end, std::vector<Vec3>& centroid) {
   Box& box = boxes_[node];
   if (node >= first_leaf_) {
     leaves_[node - first_leaf_] = {begin, end};
