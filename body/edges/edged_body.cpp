@@ -8,7 +8,7 @@
 namespace umtet {
 namespace {
 
-// Of the diagonal, and of h: the background has to have two edges and more around the body.
+// Shares of the diagonal and of h: the background needs two edges or more around the body.
 constexpr double kMargin = .1, kEdgesAround = 5;
 
 Box box_of(const TriangleMesh& mesh) {

@@ -21,10 +21,10 @@
 namespace umtet {
 namespace {
 
-// Of the diagonal, of a vertex from its plane, sphere, cylinder or cone. STL files store coordinates with 24 bits: 6e-8
-// of their size.
+// Largest distance of a vertex from its surface, as a share of the diagonal. STL files store coordinates with 24 bits:
+// 6e-8 of their size.
 constexpr double kVertexTolerance = 1e-6;
-// Of the diagonal, of the facets: half of the deviation that is asked of the faces of a mesh by default.
+// Largest distance of a facet from it, as a share of the diagonal: half of the default deviation of mesh faces.
 constexpr double kFacetTolerance = 2.5e-4;
 // Points of a curve for each of its edges in the file, where it is the common zero set of two such surfaces.
 constexpr int kPointsAnEdge = 4;

@@ -27,8 +27,8 @@ struct TriangleDomain {
 /// of the functions of its two patches if the edge is convex, else the minimum; where it is a vertex of a curve, psi is
 /// the distance from it, with the sign of the angle-weighted normal of all triangles around [Baerentzen2005].
 ///
-/// The curves are those of `edges`, as polylines; where two patches meet at 15 degrees or more, and one of them is no
-/// triangles, they are the common zero sets. Curves that return to a corner are divided in three.
+/// Curves are the polylines of `edges`. Where two patches meet at 15 degrees or more, and one of them is a plane,
+/// sphere, cylinder or cone, the curve is their common zero set. Curves that return to a corner are divided in three.
 /// @param mesh   triangles that face outward
 /// @param edges  find_sharp_edges() of these triangles
 /// @return none if the surface is no closed manifold: each edge has two triangles, in opposite directions
