@@ -19,8 +19,7 @@ std::shared_ptr<const PiecewiseBody> edged_body(const GivenTriangles& triangles)
 /// @param cloud  samples of the triangles, model coordinates
 /// @param shift  origin of the working coordinates, model coordinates
 /// @param box    the box to be meshed, model coordinates; empty: the box of the triangles with a margin of a tenth of
-/// its
-///               diagonal, or of five edges of length h
+///               its diagonal, or of five edges of length h
 /// @param h      edge length, if it is given, or 0
 Domain edged_domain(std::shared_ptr<const GivenTriangles> triangles, std::shared_ptr<const PiecewiseBody> body,
                     OrientedPointCloud cloud, const Vec3& shift, const std::optional<Box>& box, double h);
