@@ -6,6 +6,7 @@
 
 #include "body/label_volume.h"
 #include "body/pieces/component_proof.h"
+#include "body/pieces/zero_free_blocks.h"
 #include "common/formatted.h"
 #include "mesh/implicit/surface_distance.h"
 #include "mesh/sizes/graded_zero_set.h"
@@ -136,6 +137,8 @@ ZeroSetChoice choose_components(const Domain& domain, double h, const Context& c
   if (domain.level_set) {
     if (!cells) cells = &choice.cells.emplace(sign_cells(*domain.level_set, h / 2));
     far = ZeroFreeMap(*cells, domain.box.intersection(domain.level_set->domain()), spacing);
+  } else if (domain.has_edges_of_triangles()) {
+    far = ZeroFreeBlocks(domain.psi(), domain.box, spacing, context);  // psi is a distance
   }
   choice.topology = zero_set_topology(domain.psi(), domain.box, spacing, context, far);
   choose_among(domain, choice, context);

@@ -20,8 +20,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();  // phi of
 // PNormSmoother leaves; the last is within (ln 100) / 1536 = .3 % of the least of a hundred equal tets.
 constexpr int kLog2Powers[] = {5, 7, 9};
 constexpr int kMostSteps = 60;  // for each p: patches of repair settle in 20 to 40
-// Relative gain of ||1/Q||_p by a step below which the next p has its turn.
-constexpr double kLeastGain = 1e-5;
 // Longest move of a vertex along an axis in a step, in edges: farther off, the pairs of L-BFGS say nothing. And of the
 // first step, whose length no pair suggests.
 constexpr double kLongestMove = .2, kFirstMove = .02;
@@ -237,7 +235,8 @@ struct Best {
 
 /// Steps of L-BFGS until they gain little, or reach the goal.
 /// @return phi_p at the end, up to ln kMeanRatioFactor; -infinity where it falls on, +infinity if it was never finite
-double minimise(LayerNorm& norm, int log2_power, double goal, const ActiveLayer& layer, Best& best, int& evaluations) {
+double minimise(LayerNorm& norm, int log2_power, double goal, double least_gain, const ActiveLayer& layer, Best& best,
+                int& evaluations) {
   norm.begin_here();
   VectorXd u = VectorXd::Zero(norm.n_unknowns()), g(u.size()), next_u(u.size()), next_g(u.size()), step(u.size());
   detail::LbfgsDirection direction(u.size());
@@ -272,7 +271,7 @@ double minimise(LayerNorm& norm, int log2_power, double goal, const ActiveLayer&
     u.swap(next_u);
     g.swap(next_g);
     best.meet(norm.least(), layer);
-    if (best.least >= goal || phi - next < kLeastGain) return next;
+    if (best.least >= goal || phi - next < least_gain) return next;
     phi = next;
   }
   return -kInfinity;  // not at a minimum yet
@@ -280,14 +279,15 @@ double minimise(LayerNorm& norm, int log2_power, double goal, const ActiveLayer&
 
 }  // namespace
 
-AllVertexReport smooth_all_vertices(ActiveLayer& layer, ImplicitFunctionRef psi, double goal, double needed) {
+AllVertexReport smooth_all_vertices(ActiveLayer& layer, ImplicitFunctionRef psi, double goal, double needed,
+                                    double least_gain) {
   AllVertexReport report;
   LayerNorm norm(layer, psi);
   if (norm.n_tets() == 0) return report;
   Best best{0, layer.V};
   for (const int log2_power : kLog2Powers) {
     if (best.least >= goal) break;
-    const double phi = minimise(norm, log2_power, goal, layer, best, report.evaluations);
+    const double phi = minimise(norm, log2_power, goal, least_gain, layer, best, report.evaluations);
     const double spread = std::log(static_cast<double>(norm.n_tets())) / std::ldexp(3., log2_power);
     if (phi < kInfinity && kMeanRatioFactor * std::exp(spread - phi) < needed) break;
   }

@@ -30,8 +30,10 @@ struct AllVertexReport {
 /// @param goal   mean ratio at which the iteration stops, at the first positions that reach it
 /// @param needed mean ratio: greater p are not tried where no positions near a minimum of phi_p reach this, by
 ///               min Q <= n^(1/p) exp(-phi_p)
+/// @param least_gain  decrease of phi_p by a step below which the next p has its turn
 /// Cost: 40 ns per tet and evaluation, with about 100 evaluations (`mesh_bench --benchmark_filter=all_vertices`). Runs
 /// in one thread.
-AllVertexReport smooth_all_vertices(ActiveLayer& layer, ImplicitFunctionRef psi, double goal, double needed = 0);
+AllVertexReport smooth_all_vertices(ActiveLayer& layer, ImplicitFunctionRef psi, double goal, double needed = 0,
+                                    double least_gain = 1e-5);
 
 }  // namespace umtet

@@ -2,14 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 
 #include "body/fidelity/measure.h"
 #include "body/fidelity/verdict.h"
 #include "body/pieces/component_proof.h"
-#include "mesh/universal_mesh.h"
+#include "body/pieces/zero_free_blocks.h"
 #include "mesh/expression/expression.h"
+#include "mesh/universal_mesh.h"
 
 namespace umtet {
 namespace {
@@ -153,6 +156,29 @@ std::string text_of(const std::vector<std::string>& reasons) {
   std::string text;
   for (const std::string& reason : reasons) text += reason + "\n";
   return text;
+}
+
+/// The distance of a bar and a ball, which counts its evaluations.
+struct CountedDistance {
+  mutable std::atomic<std::size_t> n = 0;
+  double evaluate(const Vec3& x, Vec3*, Mat3*) const {
+    ++n;
+    const double bar = std::max({std::abs(x.x()) - 1.5, std::abs(x.y()) - .2, std::abs(x.z()) - .2});
+    return std::min(bar, ball(x, {0, 1.3, 0}, .3));
+  }
+};
+
+TEST(ZeroFreeBlocks, ACountSkipsThemAndFindsTheSame) {
+  const CountedDistance f;
+  const Box box(Vec3::Constant(-1.9), Vec3::Constant(1.9));
+  const ZeroSetTopology all = zero_set_topology(f, box, .03);
+  const std::size_t n_all = f.n.exchange(0);
+  const ZeroSetTopology some = zero_set_topology(f, box, .03, {}, ZeroFreeBlocks(f, box, .03));
+  EXPECT_LT(5 * f.n, n_all);
+  ASSERT_EQ(some.components.size(), 2u);
+  ASSERT_EQ(some.cut_points.size(), all.cut_points.size());
+  EXPECT_TRUE(some.cut_points == all.cut_points);
+  EXPECT_EQ(some.components[1].euler_characteristic, all.components[1].euler_characteristic);
 }
 
 TEST(Measure, TopologyIsComparedAlsoWhenAPieceIsDropped) {
