@@ -11,6 +11,7 @@
 #include <numbers>
 #include <numeric>
 #include <queue>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -18,8 +19,11 @@ namespace umtet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kReach = 4;           // in h: with 2.5 one wedge of 30 degrees in ten gets no path
-constexpr double kCornerReach = 2;     // in h
+constexpr double kReach = 4;        // in h: with 2.5 one wedge of 30 degrees in ten gets no path
+constexpr double kCornerReach = 2;  // in h
+// Added to the distance, in h, of a vertex that lies at a patch on which the curve or corner is not: the other side of
+// a thin wall may be nearer than its own.
+constexpr double kForeign = 1;
 constexpr double kLengthWeight = .15;  // of a length in h, beside a squared distance in h
 constexpr double kWedgeWeight = 8;     // of the squared lack of quality
 constexpr double kGoodWedge = .95;
@@ -85,6 +89,7 @@ class Embedder {
         boundary_(V.size(), C, faces),
         owner_(V.size(), kFree),
         fights_(V.size(), 0),
+        patch_(V.size(), kUnasked),
         places_(V.size()) {}
 
   FeatureEmbedding operator()(const Context& context) {
@@ -128,14 +133,21 @@ class Embedder {
   }
 
  private:
-  static constexpr int kFree = -1, kCorner = -2;
+  static constexpr int kFree = -1, kCorner = -2, kUnasked = -1;
+
+  /// kForeign where the patch that decides psi at a vertex is none of these, else 0.
+  double foreign(int v, std::span<const int> patches) {
+    if (patch_[v] == kUnasked) patch_[v] = domain_.active(V_[v]);
+    return std::find(patches.begin(), patches.end(), patch_[v]) == patches.end() ? kForeign : 0;
+  }
 
   void place_corners() {
     std::vector<std::tuple<double, int, int>> pairs;
     for (std::size_t c = 0; c < graph_.corners.size(); ++c)
       for (const int v : boundary_.vertices) {
         const double d = (V_[v] - graph_.corners[c].place).norm();
-        if (d < kCornerReach * h_[v]) pairs.emplace_back(d / h_[v], static_cast<int>(c), v);
+        if (d < kCornerReach * h_[v])
+          pairs.emplace_back(d / h_[v] + foreign(v, graph_.corners[c].patches), static_cast<int>(c), v);
       }
     std::sort(pairs.begin(), pairs.end());
     made_.corner_vertex.assign(graph_.corners.size(), -1);
@@ -158,7 +170,8 @@ class Embedder {
       places_[v] = {kInfinity, 0};
       if (box.squaredExteriorDistance(V_[v]) > kReach * kReach * h_[v] * h_[v]) continue;
       places_[v] = c.nearest(V_[v]);
-      if (places_[v].distance > kReach * h_[v]) places_[v].distance = kInfinity;
+      double& distance = places_[v].distance;
+      distance = distance > kReach * h_[v] ? kInfinity : distance + h_[v] * foreign(v, c.patches);
     }
   }
 
@@ -456,6 +469,7 @@ class Embedder {
   std::vector<int> owner_;    ///< per vertex: its curve, kCorner or kFree
   std::vector<int> fights_;   ///< per vertex: how often a path has lost it to another
   std::vector<int> evicted_;  ///< the paths that lost vertices to the last one
+  std::vector<int> patch_;    ///< per vertex: the patch that decides psi there, or kUnasked
   std::vector<FeatureCurve::Place> places_;
   std::vector<int> votes_;  ///< per face
   FeatureEmbedding made_;
