@@ -20,10 +20,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kReach = 4;        // in h: with 2.5 one wedge of 30 degrees in ten gets no path
-constexpr double kCornerReach = 2;  // in h
+constexpr double kCornerReach = 3;  // in h
 // Added to the distance, in h, of a vertex that lies at a patch on which the curve or corner is not: the other side of
 // a thin wall may be nearer than its own.
-constexpr double kForeign = 1;
+constexpr double kForeign = 2;
 constexpr double kLengthWeight = .15;  // of a length in h, beside a squared distance in h
 constexpr double kWedgeWeight = 8;     // of the squared lack of quality
 constexpr double kGoodWedge = .95;

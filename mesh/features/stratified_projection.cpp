@@ -17,6 +17,8 @@ constexpr std::array<double, 4> kShares = {1, .5, .25, .125};
 constexpr int kRoundsPerDetour = 3;
 // A vertex that is held back this often no longer insists on its own point of the curve: the nearest one will do.
 constexpr int kRoundsForTarget = 8;
+// So few vertices are put onto their strata one by one where that fails for all of them at once.
+constexpr std::size_t kMostLeaps = 20;
 
 /// Puts vertices onto their strata although tets invert, and untangles. The layer stays unchanged where that fails.
 bool leap(PNormSmoother& smoother, ImplicitFunctionRef psi, const std::vector<Vec3>& target,
@@ -102,6 +104,8 @@ StratifiedProjectionReport project_onto_strata(PNormSmoother& smoother, Implicit
   }
   for (const int v : under_way) layer.role[v] = Role::Boundary;
   if (!under_way.empty() && leap(smoother, psi, target, under_way, params.smoothing, context)) under_way.clear();
+  if (under_way.size() <= kMostLeaps)
+    std::erase_if(under_way, [&](int v) { return leap(smoother, psi, target, {v}, params.smoothing, context); });
   report.not_arrived = std::move(under_way);
   return report;
 }

@@ -29,8 +29,8 @@ struct StratifiedProjectionReport {
 ///
 /// Corners go to their places, vertices of a curve to given points of it, all others to the foot on their patch. A
 /// vertex goes a part of the way if a tet holds it back. Between rounds the others are smoothed, with those that have
-/// arrived on their strata. Those that have not arrived in the end are put there all at once; this counts if smoothing
-/// untangles every tet.
+/// arrived on their strata. Those that have not arrived in the end are put there all at once, or one by one; this counts
+/// if smoothing untangles every tet.
 /// \pre layer.strata is set
 /// @param target  per vertex of the layer: the point to go to, or not finite for the foot on the stratum
 /// \throw Cancelled

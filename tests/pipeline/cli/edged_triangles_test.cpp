@@ -73,6 +73,18 @@ TEST_F(EdgedTriangles, APlateThinnerThanItsEdgesIsExact) {
   EXPECT_LE(c["n_tets"].get<int>(), 200000);
 }
 
+/// Its inner edges are nearer to the outer side than to boundary vertices of their own side.
+TEST_F(EdgedTriangles, WallsAsThinAsAnEdgeKeepTheirInnerEdges) {
+  write_stl("box.stl", test::open_box({20, 12, 8}, 1));
+  const Result r = run("run box.stl -o box --no-report --h .8 --strict");
+  ASSERT_EQ(r.code, 0) << r.out << r.err;
+  const Json c = certificate_of("box");
+  EXPECT_EQ(c["verdict"], "pass");
+  EXPECT_EQ(c["features"]["curves"], 24);
+  EXPECT_EQ(c["features"]["missed_curves"], 0);
+  EXPECT_NEAR(c["volume"].get<double>(), 20 * 12 * 8 - 18 * 10 * 7, 1e-7);
+}
+
 TEST_F(EdgedTriangles, EdgesOffAndCurvedTetsMakeOneSmoothLevelSet) {
   write_stl("cube.stl", tilted_cube());
   for (const char* how : {"--edges off", "--order 2"}) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "reconstruct/triangles/face_patches.h"
 #include "reconstruct/triangles/triangle_mesh.h"
@@ -20,6 +21,34 @@ inline TriangleMesh cube() {
            {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
     mesh.F.push_back({a, b, c});
     mesh.F.push_back({a, c, d});
+  }
+  return mesh;
+}
+
+/// A box with walls and a floor of this thickness, open above.
+inline TriangleMesh open_box(const Vec3& size, double wall) {
+  TriangleMesh mesh;
+  const auto rectangle = [&](const Vec3& low, const Vec3& high, double z) {
+    for (const auto& [x, y] :
+         {std::pair(low.x(), low.y()), {high.x(), low.y()}, {high.x(), high.y()}, {low.x(), high.y()}})
+      mesh.V.emplace_back(x, y, z);
+  };
+  const auto face = [&](int a, int b, int c, int d) {
+    mesh.F.push_back({a, b, c});
+    mesh.F.push_back({a, c, d});
+  };
+  const Vec3 outer = Vec3::Zero(), inner = Vec3::Constant(wall), opposite = size - inner;
+  rectangle(outer, size, 0);             // 0 .. 3
+  rectangle(outer, size, size.z());      // 4 .. 7
+  rectangle(inner, opposite, size.z());  // 8 .. 11
+  rectangle(inner, opposite, wall);      // 12 .. 15
+  face(3, 2, 1, 0);
+  face(12, 13, 14, 15);
+  for (int k = 0; k < 4; ++k) {
+    const int next = (k + 1) % 4;
+    face(k, next, 4 + next, 4 + k);
+    face(4 + k, 4 + next, 8 + next, 8 + k);
+    face(8 + k, 8 + next, 12 + next, 12 + k);
   }
   return mesh;
 }
