@@ -9,8 +9,8 @@
 namespace umtet {
 namespace {
 
-constexpr std::array<const char*, 10> kWords = {"missed", "guessed", "handles", "pieces", "distance",
-                                                "volume", "genus",   "voxels",  "edges",  "noise"};
+constexpr std::array<const char*, 11> kWords = {"missed", "guessed", "handles", "pieces", "distance", "volume",
+                                                "genus",  "voxels",  "edges",   "noise",  "sides"};
 
 std::string at(const Vec3& x) { return formatted("(%.6g, %.6g, %.6g)", x.x(), x.y(), x.z()); }
 
@@ -37,6 +37,13 @@ void add_noise(const MeshMeasures& m, std::vector<InputDefect>& defects) {
        formatted("the noise of the samples is %.2g h: walls, gaps and handles thinner than a few h may be "
                  "lost or invented",
                  noise)});
+}
+
+void add_sides(const InputFacts& facts, std::vector<InputDefect>& defects) {
+  const double guessed = std::min(1., facts.doubtful);
+  if (guessed <= kMuchGuessed) return;
+  defects.push_back({InputDefectKind::Sides, guessed, guessed <= kMostlyGuessed,
+                     formatted("the outward side of %.0f %% of the samples is a guess", 100 * guessed)});
 }
 
 void add_guesses(const SupportReport& support, std::vector<InputDefect>& defects) {
@@ -165,6 +172,7 @@ std::vector<InputDefect> input_defects(const MeshMeasures& m) {
   if (m.cloud) add_missed(m, defects);
   if (m.domain.support) add_guesses(*m.domain.support, defects);
   if (m.cloud) add_noise(m, defects);
+  if (m.cloud && m.input) add_sides(*m.input, defects);
   return defects;
 }
 

@@ -24,10 +24,11 @@ enum class InputDefectKind {
   Voxels,
   Edges,  ///< sharp edges of the triangles are rounded; largest distance from one to the boundary, in h
   Noise,  ///< the noise of the samples hides finer features; its standard deviation, in h
+  Sides,  ///< the outward side of samples is a guess; their share
 };
 
 /// Returns the word that documents and VerdictOptions::accept use: "missed", "guessed", "handles", "pieces",
-/// "distance", "volume", "genus", "voxels", "edges", "noise".
+/// "distance", "volume", "genus", "voxels", "edges", "noise", "sides".
 const char* to_string(InputDefectKind kind);
 std::optional<InputDefectKind> input_defect_kind_of(const std::string& word);
 
@@ -39,8 +40,8 @@ struct InputDefect {
   std::string what;       ///< one clause with the amount and the position
 };
 
-/// The boundary is a guess where no sample is near. If the share of guesses exceeds this value, the verdict names a
-/// defect ...
+/// The boundary is a guess where no sample is near, and the outward side of a sample may be one. If the share of
+/// guesses exceeds this value, the verdict names a defect ...
 inline constexpr double kMuchGuessed = .2;
 /// ... and above this value, at which most of the boundary is a guess, the mesh fails.
 inline constexpr double kMostlyGuessed = .5;

@@ -46,7 +46,8 @@ bool fails_by_guesses(const MeshAttempt& a) {
       a.measured.mesh.boundary.euler_characteristic >= a.measured.domain.euler_characteristic_of_kept_components;
   const std::vector<InputDefect> defects = input_defects(a.measured);
   return std::any_of(defects.begin(), defects.end(), [&](const InputDefect& d) {
-    return !d.is_small && (d.kind == InputDefectKind::Guessed || (d.kind == InputDefectKind::Handles && repeats_psi));
+    return !d.is_small && (d.kind == InputDefectKind::Guessed || d.kind == InputDefectKind::Sides ||
+                           (d.kind == InputDefectKind::Handles && repeats_psi));
   });
 }
 

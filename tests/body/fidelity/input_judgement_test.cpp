@@ -90,6 +90,21 @@ TEST(InputJudgement, AGuessIsNamedAndABodyThatIsMostlyInventedFails) {
   EXPECT_NE(judged(guessing(.95)).blame->number.find("95 %"), std::string::npos);
 }
 
+TEST(InputJudgement, ABodyWhoseOutwardSideIsMostlyAGuessFails) {
+  MeshMeasures m = guessing(0);
+  m.cloud.emplace();
+  m.input.emplace();
+  const auto word = [&](double doubtful) {
+    m.input->doubtful = doubtful;
+    return judged(m).verdict.word();
+  };
+  EXPECT_EQ(word(.2), "pass");
+  EXPECT_EQ(word(.3), "pass with 1 defect named");
+  EXPECT_EQ(word(1), "fail");
+  EXPECT_EQ(judged(m).blame->stage, "normals");
+  EXPECT_NE(judged(m).verdict.reasons.front().find("100 % of the samples is a guess"), std::string::npos);
+}
+
 TEST(InputJudgement, HandlesWithoutSamplesFailWhereMuchIsGuessed) {
   EXPECT_EQ(judged(guessing(.1, 1)).verdict.word(), "pass with 1 defect named");
   const Certificate c = judged(guessing(.4, 6));
