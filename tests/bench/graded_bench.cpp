@@ -15,6 +15,7 @@
 #include "mesh/background/vertex_links.h"
 #include "mesh/classification/star_cost_table.h"
 #include "mesh/core/tet_quality.h"
+#include "mesh/fast/flips/flipped_submesh.h"
 #include "mesh/octree/graded_mesh.h"
 #include "mesh/universal_mesh.h"
 #include "tests/support/domains.h"
@@ -180,6 +181,31 @@ BENCHMARK(graded_growth)
     ->ArgsProduct({{440, 210, 100, 62}})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(1);
+
+/// Local flips on a sphere that is four times as fine on one side, by the share that the worst new tet has to promise:
+/// tries, kept operations, and the least Q.
+void flips(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const GradedBody body = graded_body(false, .021, 4, Vec3::Zero());
+  UmParams params;
+  params.fast.flips_follow = true;
+  const UmResult before = universal_mesh(body.background, body.domain, params);
+  LocalFlipParams of_flips;
+  of_flips.promising = 1e-2 * static_cast<double>(state.range(0));
+  LocalFlipReport report;
+  double least = 1;
+  for (auto _ : state) {
+    UmResult made = before;
+    report = flip_submesh(body.domain, .021, of_flips, made);
+    for (const Tet& t : made.submesh.mesh.C)
+      least = std::min(least, mean_ratio(made.final[t[0]], made.final[t[1]], made.final[t[2]], made.final[t[3]]));
+  }
+  state.counters["tries"] = static_cast<double>(report.tries);
+  state.counters["kept"] = static_cast<double>(report.n_removed_edges + report.n_collapsed + report.n_smoothed);
+  state.counters["below_target"] = static_cast<double>(report.n_below);
+  state.counters["least_q"] = least;
+}
+BENCHMARK(flips)->ArgName("promising_percent")->Arg(40)->Arg(60)->Arg(80)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -27,9 +28,11 @@
 #include "reconstruct/cloud/neighbours/neighbourhoods.h"
 #include "reconstruct/cloud/normals/normal_estimation.h"
 #include "reconstruct/solve/fit_ssd.h"
+#include "tests/reconstruct/triangles/solids.h"
 #include "tests/support/bench_domains.h"
 #include "tests/support/clouds.h"
 #include "tests/support/gradings.h"
+#include "umtet/umtet.h"
 
 using namespace umtet;
 
@@ -37,11 +40,25 @@ namespace {
 
 constexpr int kPoints = 5000;
 constexpr double kTets = 20000;
+constexpr int kThinPoints = 1500;
 
 struct Phase {
   std::string name;
   std::function<void()> work;
 };
+
+/// A flat ellipsoid, two spirals of samples: one on each side.
+FittedBody thin_scan() {
+  OrientedPointCloud cloud;
+  const testing::AnalyticDomain lens = testing::ellipsoid({1, 1, .1});
+  for (int i = 0; i < kThinPoints; ++i) {
+    const double r = std::sqrt((i / 2 + .5) / (kThinPoints / 2)), turn = 2.399963229728653 * (i / 2);  // golden angle
+    const Vec3 x(r * std::cos(turn), r * std::sin(turn), (i % 2 ? -.1 : .1) * std::sqrt(1 - r * r));
+    cloud.points.push_back(x);
+    cloud.normals.push_back(lens.gradient(x).normalized());
+  }
+  return fit_body(std::move(cloud));
+}
 
 struct Meshed {
   testing::AnalyticDomain domain = testing::banchoff_chmutov_4();
@@ -52,6 +69,7 @@ struct Meshed {
   TetMesh mesh{result.final, result.submesh.mesh.C};
   OrientedPointCloud cloud = test::torus_cloud(kPoints);
   LevelSet psi = fit_ssd(cloud, {}).psi;
+  FittedBody thin = thin_scan();
 };
 
 std::vector<Phase> phases(const Meshed& m, const std::filesystem::path& file) {
@@ -89,6 +107,25 @@ std::vector<Phase> phases(const Meshed& m, const std::filesystem::path& file) {
   phase("distances", [&] {
     const SurfaceDistance distance(m.mesh.V, m.result.submesh.positive_faces);
     benchmark::DoNotOptimize(distance.distances(m.cloud.points));
+  });
+  phase("graded body", [] {
+    const testing::AnalyticDomain flat = testing::ellipsoid({1, .4, .1});
+    Options options;
+    options.box = flat.box;
+    options.body.mesh.background = "graded";
+    options.body.mesh.tets = 20000;
+    benchmark::DoNotOptimize(mesh_body(flat, options));
+  });
+  phase("thin scan", [&] {
+    Options options;
+    options.body.mesh.background = "graded";
+    options.body.mesh.h = .1;
+    options.body.mesh.h_min = .05;
+    benchmark::DoNotOptimize(mesh_body(m.thin, options));
+  });
+  phase("part with edges", [] {
+    TriangleMesh part = test::open_box({20, 12, 8}, 2);
+    benchmark::DoNotOptimize(mesh_body(std::move(part)));
   });
   phase("writing", [&, file] { write_vtu(file, {.mesh = m.mesh, .point_data = {}, .cell_data = {}}); });
   return all;
