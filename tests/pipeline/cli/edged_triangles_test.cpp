@@ -153,15 +153,16 @@ TEST_F(EdgedTriangles, GivenLinesReplaceTheEdgesUnlessBothAreAskedFor) {
   std::ofstream(folder / "square.feat") << "feat 1\n5\n.3 .3 1\n.7 .3 1\n.7 .7 1\n.3 .7 1\n.3 .3 1\n";
   EXPECT_NE(run("inspect cube.stl --features square.feat").out.find("4 sharp edges, 4 corners, 2 patches"),
             std::string::npos);
-  const Result both = run("run cube.stl -o cube --no-report --h .1 --features square.feat --edges auto");
+  const std::string call = "run cube.stl -o cube --no-report --h .12 --features square.feat --edges auto";
+  const Result both = run(call);
   ASSERT_EQ(both.code, 0) << both.out << both.err;
   EXPECT_NE(both.err.find("16 sharp edges, 12 corners, 7 patches, 4 of the edges from given lines"), std::string::npos)
       << both.err;
   EXPECT_EQ(certificate_of("cube")["features"]["missed_curves"], 0);
   // Another file makes another mesh.
-  EXPECT_NE(run("run cube.stl -o cube --no-report").err.find("up to date"), std::string::npos);
+  EXPECT_NE(run(call).err.find("up to date"), std::string::npos);
   std::ofstream(folder / "square.feat") << "feat 1\n3\n.3 .3 1\n.7 .3 1\n.7 .7 1\n";
-  const Result again = run("run cube.stl -o cube --no-report");
+  const Result again = run(call);
   EXPECT_NE(again.err.find("14 sharp edges"), std::string::npos) << again.err;
   // Lines elsewhere are refused before anything is made.
   std::ofstream(folder / "square.feat") << "feat 1\n2\n.3 .3 1\n.7 .3 1.5\n";
