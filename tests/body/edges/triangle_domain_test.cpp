@@ -136,6 +136,8 @@ TEST(TriangleDomain, MeshesHaveFlatBordersAndLines) {
   // A border along a cylinder, and one across it.
   TriangleMesh half = cylinder(48);
   for (std::size_t f = 0; f < half.F.size(); ++f) half.labels.push_back(half.centroid(f).y() > 0 ? 2 : 1);
+  // A face between two flat curves that meet is on either patch as far as its strata show, and no flip changes it: the
+  // least Q of the imprint is .71 in 4 of 18 positions.
   const Law laws[] = {{"imprint", imprint, .08, 16, 12, 1e-12, .7},
                       {"open", open, .08, 14, 11, 1e-12},
                       {"cross", cross, .08, 16, 13, 1e-12},
