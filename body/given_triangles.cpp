@@ -1,8 +1,12 @@
 #include "body/given_triangles.h"
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 
+#include "reconstruct/triangles/body_samples.h"
 #include "reconstruct/triangles/face_patches.h"
+#include "reconstruct/triangles/feature_lines.h"
 #include "reconstruct/triangles/sliver_repair.h"
 
 namespace umtet {
@@ -21,16 +25,18 @@ bool is_on_boundary(const TriangleMesh& mesh) {
   for (std::size_t f = 0; f < mesh.F.size(); ++f) {
     const double area = mesh.area_vector(f).norm();
     all += area;
-    if (!mesh.labels.empty() && mesh.labels[f] == 0) inside += area;
+    if (!mesh.labels.empty() && is_partly_inside(mesh.labels[f])) inside += area;
   }
   return inside <= kFewInside * all;
 }
 
-TriangleMesh whole_triangles(const TriangleMesh& mesh) {
+/// The triangles that are not partly inside, or all, with the vertices that they use and their groups.
+TriangleMesh whole_triangles(const TriangleMesh& mesh, bool all) {
   TriangleMesh some;
   std::vector<int> number(mesh.V.size(), -1);
   for (std::size_t f = 0; f < mesh.F.size(); ++f) {
-    if (!mesh.labels.empty() && mesh.labels[f] == 0) continue;
+    const int label = mesh.labels.empty() ? 1 : mesh.labels[f];
+    if (!all && is_partly_inside(label)) continue;
     Triangle t = mesh.F[f];
     for (int& v : t) {
       if (number[v] < 0) {
@@ -40,22 +46,27 @@ TriangleMesh whole_triangles(const TriangleMesh& mesh) {
       v = number[v];
     }
     some.F.push_back(t);
+    some.labels.push_back(group_of(label));
   }
+  const std::vector<int>& groups = some.labels;
+  if (std::adjacent_find(groups.begin(), groups.end(), std::not_equal_to<>()) == groups.end()) some.labels.clear();
+  some.lines = renumbered_lines(mesh.lines, number);
   return some;
 }
 
 }  // namespace
 
-std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift, double sure_turn) {
+std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift,
+                                                      const SharpEdgeParams& params) {
   for (Vec3& x : mesh.V) x -= shift;
   SurfaceDistance distance(mesh.V, mesh.F);
   const TriangleBody of_all = measure_body({mesh.V, mesh.F});
   const bool is_on = is_on_boundary(mesh) || (of_all.n_pieces == 1 && of_all.is_manifold);
   const TriangleBody body = is_on ? of_all : measure_body(mesh);
   const bool is_whole = is_on && body.is_closed && body.is_manifold;
-  TriangleMesh whole = is_whole ? TriangleMesh{mesh.V, mesh.F} : whole_triangles(mesh);
+  TriangleMesh whole = whole_triangles(mesh, is_whole);
   remove_slivers(whole, kSliver * diagonal_of(whole));
-  SharpEdges edges = find_sharp_edges(whole, {.sure_turn = sure_turn});
+  SharpEdges edges = find_sharp_edges(whole, params);
   return std::make_shared<const GivenTriangles>(
       GivenTriangles{std::move(mesh), std::move(distance), std::move(whole), is_whole, std::move(edges), body});
 }

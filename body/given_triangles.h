@@ -14,21 +14,22 @@ namespace umtet {
 /// resolve.
 inline constexpr double kSamplesAnEdge = 2.5;
 
-/// The triangles of the user that bound the body, in working coordinates. Triangles with label 0 are partly inside the
-/// body.
+/// The triangles of the user that bound the body, in working coordinates.
 struct GivenTriangles {
-  TriangleMesh mesh;
+  TriangleMesh mesh;  ///< with the labels of BodySamples::boundary
   SurfaceDistance distance;
-  TriangleMesh whole;  ///< the triangles that are not partly inside, with their vertices and without slivers
-  bool is_whole;       ///< all triangles bound the body: `whole` is a closed manifold
-  SharpEdges edges;    ///< of `whole`
-  TriangleBody body;   ///< the body that they bound
+  /// The triangles that are not partly inside, with their vertices and without slivers. Labels are the groups of the
+  /// triangles, if there are several.
+  TriangleMesh whole;
+  bool is_whole;      ///< all triangles bound the body: `whole` is a closed manifold
+  SharpEdges edges;   ///< of `whole`
+  TriangleBody body;  ///< the body that they bound
 };
 
-/// @param shift      vector that is subtracted from the coordinates
-/// @param sure_turn  SharpEdgeParams::sure_turn, degrees
+/// @param mesh   BodySamples::boundary
+/// @param shift  vector that is subtracted from the coordinates
 /// \throw std::invalid_argument  no triangles
 std::shared_ptr<const GivenTriangles> given_triangles(TriangleMesh mesh, const Vec3& shift,
-                                                      double sure_turn = SharpEdgeParams().sure_turn);
+                                                      const SharpEdgeParams& params = {});
 
 }  // namespace umtet

@@ -27,7 +27,8 @@ enum class NormalsOf {
 /// The use of the sharp edges of triangles.
 enum class SharpEdgeUse {
   Auto,  ///< each smooth patch has a function of its own, and the mesh has the edges
-  Off    ///< one smooth level set, which rounds the edges
+  Off,   ///< one smooth level set, which rounds the edges
+  Given  ///< as Auto, but edges are the lines of the triangles and the borders of their labels only
 };
 
 enum class WindingCheck {
@@ -67,6 +68,13 @@ struct FitOptions {
   std::int64_t max_iterations = SsdParams().max_iterations;
   std::int64_t padding = SsdParams().padding;
 };
+
+/// The rule by which edges of triangles are sharp.
+inline SharpEdgeParams sharp_edge_params(const FitOptions& fit) {
+  return {.sure_turn = fit.feature_angle,
+          .by_turn = fit.edges != SharpEdgeUse::Given,
+          .by_user = fit.edges != SharpEdgeUse::Off};
+}
 
 /// Options for the mesh: edge lengths and method. Lengths are in model units; with 0 the library chooses the value.
 struct MeshOptions {

@@ -18,6 +18,9 @@ struct PiecewiseBody {
   std::optional<FeatureGraph> graph = {};
   /// For triangles: TriangleDomain::curvature of the patches; empty for others.
   std::vector<double> curvature = {};
+  /// Label of each patch whose triangles have one label of the input in common; 0: they have none or several. Empty: no
+  /// labels.
+  std::vector<int> labels = {};
   double tolerance = 0;  ///< distance within which the curves and corners lie on their patches, model units
 };
 

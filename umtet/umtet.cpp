@@ -1,6 +1,7 @@
 #include "umtet/umtet.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <stdexcept>
 
@@ -68,7 +69,8 @@ void set_patches(const Domain& domain, const Options& options, const std::vector
   std::vector<Triangle> faces = mesh.boundary;
   faces.insert(faces.end(), mesh.walls.begin(), mesh.walls.end());
   BoundaryDivision division =
-      divide_boundary(mesh.points, faces, faces_at_walls(mesh, faces), domain.cloud, options.patches, of_body);
+      divide_boundary(mesh.points, faces, faces_at_walls(mesh, faces), domain.cloud, options.patches, of_body,
+                      domain.piecewise ? domain.piecewise->labels : std::vector<int>());
   const std::optional<SupportReport>& support = mesh.measures.domain.support;
   if (support && support->n_closed_holes > 0) {
     const ClosedHoles holes = find_closed_holes(domain, mesh.points, mesh.boundary, options.context);
@@ -162,6 +164,9 @@ void require_triangles(const TriangleMesh& mesh) {
   for (const Triangle& f : mesh.F)
     for (const int v : f)
       if (v < 0 || v >= n) throw std::invalid_argument("triangles: an index that the vertices do not have");
+  for (const std::array<int, 2>& line : mesh.lines)
+    for (const int v : line)
+      if (v < 0 || v >= n) throw std::invalid_argument("triangles: an index of a line that the vertices do not have");
   if (!mesh.labels.empty() && mesh.labels.size() != mesh.F.size())
     throw std::invalid_argument("triangles: as many labels as triangles are needed, or none");
   for (const Vec3& x : mesh.V)
@@ -199,7 +204,7 @@ FittedBody fit(SampledTriangles triangles, const Options& options) {
 /// Meshes of bodies with sharp edges have flat tets of the fast mode, without walls, in a background of the library.
 bool may_keep_edges(const Options& options) {
   const MeshOptions& mesh = options.body.mesh;
-  return options.body.fit.edges == SharpEdgeUse::Auto && options.body.scan.normals != NormalsOf::Estimate &&
+  return options.body.fit.edges != SharpEdgeUse::Off && options.body.scan.normals != NormalsOf::Estimate &&
          mesh.order == 1 && mesh.mode == UmMode::Fast && !mesh.box_walls && !has_own_background(options.body);
 }
 
@@ -207,7 +212,7 @@ bool may_keep_edges(const Options& options) {
 std::optional<Mesh> mesh_with_edges(const SampledTriangles& triangles, const Options& options) {
   if (!may_keep_edges(options)) return std::nullopt;
   const Vec3 shift = middle_of(triangles.boundary);
-  auto given = given_triangles(triangles.boundary, shift, options.body.fit.feature_angle);
+  auto given = given_triangles(triangles.boundary, shift, sharp_edge_params(options.body.fit));
   auto body = edged_body(*given);
   if (!body) return std::nullopt;
   Domain domain =
@@ -239,7 +244,8 @@ FittedBody fit_body(TriangleMesh triangles, const Options& options) {
 
 Mesh mesh_body(const FittedBody& body, const Options& options) {
   Domain domain = fitted_domain(body.psi, body.cloud, body.report, options.box);
-  if (body.boundary) domain.triangles = given_triangles(*body.boundary, domain.shift, options.body.fit.feature_angle);
+  if (body.boundary)
+    domain.triangles = given_triangles(*body.boundary, domain.shift, sharp_edge_params(options.body.fit));
   domain.facts = body.facts;
   domain.notices = body.notices;
   return mesh_of(std::move(domain), options);

@@ -18,14 +18,29 @@ Box box_of(const TriangleMesh& mesh) {
   return box;
 }
 
+std::vector<int> labels_of_patches(const GivenTriangles& triangles) {
+  const std::vector<int>& labels = triangles.whole.labels;
+  if (labels.empty()) return {};
+  constexpr int kUnknown = -1;
+  std::vector<int> of_patch(triangles.edges.n_patches, kUnknown);
+  for (std::size_t f = 0; f < labels.size(); ++f) {
+    int& label = of_patch[triangles.edges.patch[f]];
+    label = label == kUnknown || label == labels[f] ? labels[f] : 0;
+  }
+  return of_patch;
+}
+
 }  // namespace
 
 std::shared_ptr<const PiecewiseBody> edged_body(const GivenTriangles& triangles) {
   if (!triangles.is_whole || triangles.edges.curves.empty()) return nullptr;
   std::optional<TriangleDomain> made = triangle_domain(triangles.whole, triangles.edges);
   if (!made) return nullptr;
-  return std::make_shared<const PiecewiseBody>(
-      PiecewiseBody{std::move(made->domain), std::move(made->graph), std::move(made->curvature), made->tolerance});
+  return std::make_shared<const PiecewiseBody>(PiecewiseBody{.domain = std::move(made->domain),
+                                                             .graph = std::move(made->graph),
+                                                             .curvature = std::move(made->curvature),
+                                                             .labels = labels_of_patches(triangles),
+                                                             .tolerance = made->tolerance});
 }
 
 Domain edged_domain(std::shared_ptr<const GivenTriangles> triangles, std::shared_ptr<const PiecewiseBody> body,

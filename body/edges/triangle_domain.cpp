@@ -30,6 +30,8 @@ constexpr double kFacetTolerance = 2.5e-4;
 constexpr int kPointsAnEdge = 4;
 // Cosine of the least angle between the normals of two surfaces that define their curve: 15 degrees.
 constexpr double kMostCos = .966;
+// Degrees: edges that turn by less are lines in a smooth surface. STL files in single precision turn by less.
+constexpr double kFlat = 1;
 constexpr int kMostNewton = 20;
 constexpr double kConverged = 1e-13;  // of the coordinates
 constexpr int kParts = 3;             // of a curve that returns to its corner
@@ -177,6 +179,7 @@ ActivePatch Surface::psi(const Vec3& x) const {
       const double f = patches_[p](x, nullptr, nullptr), g = patches_[q](x, nullptr, nullptr);
       return (f < g) == is_convex ? ActivePatch{g, q} : ActivePatch{f, p};
     }
+    if (std::abs(side->angle_deg - 180) < kFlat) break;  // a line in a smooth patch
     // Both sides of the crease are one patch: x is beyond a convex edge outside, beyond a concave one inside.
     return {is_convex ? hit.distance : -hit.distance, p};
   }

@@ -18,6 +18,9 @@ namespace {
 // In h: what the file of a mesh leaves of the distance of a vertex to its patch.
 constexpr double kOnPatch = 1e-6;
 
+// Of the cosines of two patches that go on into one another: their normals differ by less than 3 degrees.
+constexpr double kAlike = 1e-3;
+
 /// One patch, negative inside, as an implicit function; psi as a whole for -1.
 struct Patch {
   const PiecewiseDomain* body;
@@ -49,15 +52,23 @@ std::vector<int> patches_by_position(const PiecewiseDomain& body, const std::vec
   std::vector<int> patch(faces.size(), -1);
   polled_parallel_for(faces.size(), kValuesPerPoll, context, [&](std::size_t i) {
     const auto& [a, b, c] = faces[i];
-    const Vec3 n = (V[b] - V[a]).cross(V[c] - V[a]), centroid = (V[a] + V[b] + V[c]) / 3;
+    const Vec3 n = (V[b] - V[a]).cross(V[c] - V[a]).stableNormalized(), centroid = (V[a] + V[b] + V[c]) / 3;
     double nearest = -std::numeric_limits<double>::infinity();
+    std::vector<std::pair<int, double>> candidates;
     for (const int p : at[a]) {
       const auto has = [p](const std::vector<int>& all) { return std::binary_search(all.begin(), all.end(), p); };
       if (!has(at[b]) || !has(at[c])) continue;
       Vec3 g;
       Patch{&body, p}.evaluate(centroid, &g, nullptr);
-      if (const double cosine = n.dot(g.normalized()); cosine > nearest) nearest = cosine, patch[i] = p;
+      const double cosine = n.dot(g.normalized());
+      candidates.emplace_back(p, cosine);
+      if (cosine > nearest) nearest = cosine, patch[i] = p;
     }
+    // Patches of one plane differ in their borders only.
+    if (candidates.size() < 2 || body.decides_by_signs()) return;
+    const int active = body.active(centroid);
+    for (const auto& [p, cosine] : candidates)
+      if (p == active && cosine > nearest - kAlike) patch[i] = p;
   });
   return patch;
 }

@@ -31,13 +31,24 @@ std::vector<int> distinct(std::vector<int> labels) {
   return labels;
 }
 
+/// Returns the label of the patch of each face; 0: none. Empty without labels.
+std::vector<int> labels_of_faces(const std::vector<int>& of_body, const std::vector<int>& labels) {
+  if (labels.empty()) return {};
+  std::vector<int> of_face(of_body.size(), 0);
+  for (std::size_t f = 0; f < of_body.size(); ++f)
+    if (of_body[f] >= 0) of_face[f] = labels[of_body[f]];
+  return of_face;
+}
+
 /// Divides the boundary of one mesh.
 class Division {
  public:
   Division(const std::vector<Vec3>& V, const std::vector<Triangle>& F, const std::vector<char>& at_wall)
       : V_(V), F_(F), at_wall_(at_wall) {}
 
-  BoundaryDivision by_labels(const OrientedPointCloud& cloud, const PatchOptions& options) const;
+  /// @param known  label of each face, where it is not 0; or empty
+  BoundaryDivision by_labels(const OrientedPointCloud& cloud, const PatchOptions& options,
+                             const std::vector<int>& known) const;
   /// Returns no patches if nothing is flat except walls.
   BoundaryDivision by_planes(double angle) const;
   BoundaryDivision by_angle(double angle) const;
@@ -76,7 +87,8 @@ std::vector<MeshPart> label_patches(const std::vector<int>& labels, const std::m
   return patches;
 }
 
-BoundaryDivision Division::by_labels(const OrientedPointCloud& cloud, const PatchOptions& options) const {
+BoundaryDivision Division::by_labels(const OrientedPointCloud& cloud, const PatchOptions& options,
+                                     const std::vector<int>& known) const {
   const FaceGeometry faces = face_geometry(V_, F_);
   std::vector<int> labels = vote_labels(cloud, faces.centroid, faces.normal);
   double least = options.label_min_area;
@@ -85,7 +97,12 @@ BoundaryDivision Division::by_labels(const OrientedPointCloud& cloud, const Patc
     for (std::size_t f = 0; f < faces.area.size(); ++f) area += is_wall(f) ? 0 : faces.area[f];
     least = kIslandSamples * area / static_cast<double>(cloud.points.size());
   }
+  const auto take_known = [&] {
+    for (std::size_t f = 0; f < known.size(); ++f) labels[f] = known[f] == 0 ? labels[f] : known[f];
+  };
+  take_known();
   absorb_islands(V_, F_, least, labels);
+  take_known();
   std::vector<int> of_cloud;
   for (std::size_t f = 0; f < labels.size(); ++f) {
     if (!is_wall(f)) of_cloud.push_back(labels[f]);
@@ -196,10 +213,11 @@ void require_patches(const OrientedPointCloud& cloud, const PatchOptions& option
 
 BoundaryDivision divide_boundary(const std::vector<Vec3>& V, const std::vector<Triangle>& F,
                                  const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
-                                 const PatchOptions& options, const std::vector<int>& of_body) {
+                                 const PatchOptions& options, const std::vector<int>& of_body,
+                                 const std::vector<int>& labels) {
   require_patches(cloud, options);
   const Division division(V, F, at_wall);
-  if (!cloud.labels.empty()) return division.by_labels(cloud, options);
+  if (!cloud.labels.empty()) return division.by_labels(cloud, options, labels_of_faces(of_body, labels));
   const auto without_planes = [&] {
     return options.angle > 0 || of_body.empty() ? division.by_angle(options.angle) : division.by_body(of_body);
   };

@@ -40,10 +40,12 @@ struct BoundaryDivision {
 /// @param at_wall  flags of faces at the walls of a box; empty: none
 /// @param cloud    samples, in the coordinates of V; their labels count
 /// @param of_body  patch of each face in a body with sharp edges, from 0; -1: none. Empty: a smooth body
+/// @param labels   label of each of these patches; 0: the samples decide. Empty: they decide on all
 /// \throw the exceptions of require_patches()
 BoundaryDivision divide_boundary(const std::vector<Vec3>& V, const std::vector<Triangle>& F,
                                  const std::vector<char>& at_wall, const OrientedPointCloud& cloud,
-                                 const PatchOptions& options, const std::vector<int>& of_body = {});
+                                 const PatchOptions& options, const std::vector<int>& of_body = {},
+                                 const std::vector<int>& labels = {});
 
 /// Checks the options, before there is a mesh.
 /// \throw std::invalid_argument  an angle out of range

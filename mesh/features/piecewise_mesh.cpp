@@ -120,9 +120,25 @@ void list_boundary(const std::vector<int>& stratum, PiecewiseMesh& made) {
   }
 }
 
+/// The patch of a face: the one that the strata of its corners have in common, or, of several such patches, the active
+/// one at its middle. -1: there is none.
+int patch_of(const PiecewiseDomain& domain, const BoundaryStrata& strata, const PiecewiseMesh& made,
+             const Triangle& face) {
+  const std::array<int, 3> s = {made.stratum[face[0]], made.stratum[face[1]], made.stratum[face[2]]};
+  const int only = strata.patch_of(s[0], s[1], s[2]);
+  if (only >= -1) return only;
+  const std::vector<Vec3>& V = made.mesh.V;
+  const int active = domain.active((V[face[0]] + V[face[1]] + V[face[2]]) / 3);
+  const bool is_common = std::all_of(s.begin(), s.end(), [&](int k) {
+    const std::vector<int>& patches = made.strata[k].patches;
+    return std::binary_search(patches.begin(), patches.end(), active);
+  });
+  return is_common ? active : -1;
+}
+
 /// Flips, and the numbers of the vertices that are left.
-void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const LocalFlipParams& params, PiecewiseMesh& made,
-          const Context& context) {
+void flip(const PiecewiseDomain& domain, ImplicitFunctionRef psi, const BoundaryStrata& strata,
+          const LocalFlipParams& params, PiecewiseMesh& made, const Context& context) {
   std::vector<VertexStratum> moves;
   for (const int s : made.stratum) moves.push_back(s < 0 ? VertexStratum::Inner : VertexStratum::Boundary);
   const StratifiedVertices vertices{&strata, made.stratum};
@@ -159,10 +175,7 @@ void flip(ImplicitFunctionRef psi, const BoundaryStrata& strata, const LocalFlip
   made.tet_of_chosen = std::move(flipped.origin);
   list_boundary(made.stratum, made);
   made.face_patch.clear();
-  for (const Triangle& f : made.faces) {
-    const int patch = strata.patch_of(made.stratum[f[0]], made.stratum[f[1]], made.stratum[f[2]]);
-    made.face_patch.push_back(std::max(patch, -1));
-  }
+  for (const Triangle& f : made.faces) made.face_patch.push_back(patch_of(domain, strata, made, f));
 }
 
 /// Names the vertices that are not on their corner, curve or patch.
@@ -268,7 +281,7 @@ PiecewiseMesh fit_piecewise_mesh(const PiecewiseDomain& domain, const Background
     if (*std::min_element(c.angle_deg.begin(), c.angle_deg.end()) < kSharpAngle)
       local_flips.longest = std::max(local_flips.longest, kLongestAtSharp);
   context.report("repair", kRepair);
-  if (params.flips) flip(psi, strata, local_flips, made, context);
+  if (params.flips) flip(domain, psi, strata, local_flips, made, context);
   list_off_strata(strata, made);
   return made;
 }

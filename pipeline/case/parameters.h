@@ -26,6 +26,7 @@ struct CloudParameters : ScanOptions {
   std::string file;                     ///< the point cloud or triangle mesh
   std::string columns;                  ///< columns of a table in text
   std::string orient_from;              ///< file of viewpoints; empty: none
+  std::string features;                 ///< file of edges that the mesh shall have; empty: none
   double sample_spacing = 0;            ///< largest spacing of the samples of triangles, model units; 0: chosen
   bool as_points = false;               ///< read a PLY with faces as the cloud of its vertices
   Touching touching = Touching::Apart;  ///< treatment of components that meet along an edge or at a corner

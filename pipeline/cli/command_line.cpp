@@ -125,8 +125,9 @@ CommandParser::CommandParser() {
       "points: .ply, .pcd, text (.xyz, .csv ...); triangles: .stl, .obj, .off, .ply; image: .nii, .nrrd, "
       ".vti, .vtk, also .gz; or --implicit with --box");
   add_parameter_sources(inspect);
-  for (const ParamField& f : params_fields()) {  // the reading of a text, and the prediction
-    if (f.key == keys::cloud::columns || f.key == keys::mesh::h || f.key == keys::mesh::tets ||
+  for (const ParamField& f : params_fields()) {  // the reading of a file, and the prediction
+    if (f.key == keys::cloud::columns || f.key == keys::cloud::features || f.key == keys::reconstruct::edges ||
+        f.key == keys::reconstruct::feature_angle || f.key == keys::mesh::h || f.key == keys::mesh::tets ||
         f.key == keys::mesh::max_tets || f.key == keys::mesh::implicit || f.key == keys::mesh::box)
       add_value(inspect, f);
     if (std::find(kOfImages.begin(), kOfImages.end(), f.key) == kOfImages.end()) continue;

@@ -1,16 +1,34 @@
 #include "pipeline/domain/edged_case.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "body/edges/edged_body.h"
 
 namespace umtet {
 
+void take_given_edges(Parameters& parameters) {
+  const char* key = keys::reconstruct::edges;
+  if (parameters.cloud().features.empty() || parameters.source(key) > ParamSource::Case) return;
+  parameters.set(key, "given", ParamSource::Derived, "for --features");
+}
+
+std::string edges_text(const SharpEdges& edges) {
+  std::string text =
+      fmt::format("{} sharp edges, {} corners, {} patches", edges.curves.size(), edges.corners.size(), edges.n_patches);
+  const std::size_t n_lines = edges.n_curves_by(SharpCurve::Reason::Line),
+                    n_borders = edges.n_curves_by(SharpCurve::Reason::Border);
+  if (n_lines > 0) text += fmt::format(", {} of the edges from given lines", n_lines);
+  if (n_borders > 0) text += fmt::format(", {} of the edges from the file's groups", n_borders);
+  return text;
+}
+
 EdgedTriangles edged_triangles(TriangleMesh mesh, const Vec3& shift, const Parameters& parameters) {
   EdgedTriangles made;
   made.shift = shift;
-  made.triangles = given_triangles(std::move(mesh), shift, parameters.reconstruct().feature_angle);
-  if (parameters.reconstruct().edges == SharpEdgeUse::Auto) made.body = edged_body(*made.triangles);
+  made.triangles = given_triangles(std::move(mesh), shift, sharp_edge_params(parameters.reconstruct()));
+  if (parameters.reconstruct().edges != SharpEdgeUse::Off) made.body = edged_body(*made.triangles);
   return made;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "body/given_triangles.h"
@@ -17,8 +18,14 @@ struct EdgedTriangles {
   Vec3 shift = Vec3::Zero();                        ///< origin of the working coordinates, model coordinates
 };
 
+/// Sets reconstruct.edges to given for a file of edges, unless the user sets it.
+void take_given_edges(Parameters& parameters);
+
 /// Finds the sharp edges of triangles. \param mesh  model coordinates
 EdgedTriangles edged_triangles(TriangleMesh mesh, const Vec3& shift, const Parameters& parameters);
+
+/// Returns the number of curves, corners and patches, and of the curves that angles do not show.
+std::string edges_text(const SharpEdges& edges);
 
 /// Returns whether the level-set stage kept the sharp edges of triangles instead of a fit.
 bool has_edges(const StageRecord& level_set);

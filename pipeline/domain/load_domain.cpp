@@ -94,10 +94,10 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
     domain.fitted = FittedLevelSet(*domain.level_set, [file = paths.level_set()] { return level_set_of(file); });
     if (handover && handover->triangles) {
       domain.triangles = given_triangles(std::move(*std::exchange(handover->triangles, std::nullopt)), domain.shift,
-                                         parameters.reconstruct().feature_angle);
+                                         sharp_edge_params(parameters.reconstruct()));
     } else if (cloud_state.record && is_of_triangles(paths, *cloud_state.record)) {
-      domain.triangles =
-          given_triangles(read_triangles(paths.triangles()).mesh, domain.shift, parameters.reconstruct().feature_angle);
+      domain.triangles = given_triangles(read_triangles(paths.triangles()).mesh, domain.shift,
+                                         sharp_edge_params(parameters.reconstruct()));
     }
     if (domain.triangles) domain.level_shift = level_shift_of(paths);
   } catch (const CloudRefused& e) {  // umtet wrote all files, so an error in them is damage

@@ -90,6 +90,7 @@ void mark_patches(const Domain& domain, const SolverMesh& mesh, const std::vecto
                   MarkedFaces& marked) {
   if (!domain.piecewise) return;
   marked.of_body = patches_by_position(domain, V, mesh.triangles(), h, until_interrupted());
+  marked.labels = domain.piecewise->labels;
 }
 
 MarkedFaces marked_faces(const SolverMesh& mesh, const MeshFile& file, const std::optional<SupportReport>& support) {
@@ -111,7 +112,7 @@ void divide_boundary(SolverMesh& mesh, const MarkedFaces& marked, const Oriented
                        .planar = parameters.output().patch_planar,
                        .label_min_area = parameters.output().label_min_area,
                        .names = names_of_labels(cloud, has_walls(marked.at_wall), parameters, names_of_file)},
-                      marked.of_body);
+                      marked.of_body, marked.labels);
   take_holes(marked.in_holes, division);
   take_division(mesh, std::move(division), warn);
 }

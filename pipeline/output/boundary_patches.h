@@ -25,13 +25,14 @@ struct MarkedFaces {
   std::vector<char> in_holes;  ///< flags of faces in closed_holes
   /// Patch of Domain::piecewise of each face, from 0; -1: none. Empty for a smooth body.
   std::vector<int> of_body = {};
+  std::vector<int> labels = {};  ///< PiecewiseBody::labels of these patches
 };
 
 /// Returns the marked faces of a mesh from its file, which contains `wall` and `support` if they are known.
 /// @param support  support of the certificate of the mesh
 MarkedFaces marked_faces(const SolverMesh& mesh, const MeshFile& file, const std::optional<SupportReport>& support);
 
-/// Sets MarkedFaces::of_body for a mesh of a body with sharp edges; else it does nothing.
+/// Sets MarkedFaces::of_body and labels for a mesh of a body with sharp edges; else it does nothing.
 /// @param V  vertices of the faces, working coordinates
 /// @param h  edge length of the mesh
 void mark_patches(const Domain& domain, const SolverMesh& mesh, const std::vector<Vec3>& V, double h,

@@ -91,11 +91,10 @@ std::vector<std::string> troubles(const CloudSurvey& s, const CloudFileReport& f
 void add_sharp_edges(const EdgedTriangles& edged, SampledTriangles& triangles, std::vector<std::string>& troubles) {
   const SharpEdges& edges = edged.triangles->edges;
   if (edges.curves.empty()) return;
-  const std::string found = fmt::format("{} sharp edges, {} corners, {} patches, a length of {:.4g}",
-                                        edges.curves.size(), edges.corners.size(), edges.n_patches, edges.length());
+  const std::string found = edges_text(edges) + fmt::format(", a length of {:.4g}", edges.length());
   if (edged.body) {
     triangles.notices.emplace_back(found + ": each patch gets a function of its own, and the mesh has the edges");
-  } else {
+  } else if (edges.n_curves_by(SharpCurve::Reason::Turn) > 0) {
     troubles.push_back(found + ": psi is smooth and rounds them within an edge length; a smaller --h rounds less");
   }
 }
@@ -126,7 +125,9 @@ RunPrediction prediction_of(CloudFile scan, const fs::path& file, const CloudSur
 
 }  // namespace
 
-CloudInspection inspect_cloud(const InputFile& input, const Parameters& parameters, Progress& progress) {
+CloudInspection inspect_cloud(const InputFile& input, const Parameters& given, Progress& progress) {
+  Parameters parameters = given;
+  take_given_edges(parameters);
   progress.report("inspect", "read", 0);
   const fs::path& file = input.path();
   ScanSource source = read_source(input, parameters);

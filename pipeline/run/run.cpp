@@ -134,11 +134,13 @@ void CaseRun::tell_changes(const Parameters& former) {
   }
 }
 
-/// Sharp edges are for flat tets of the fast mode, without walls; for others the level set is one smooth function.
+/// Edges of a file replace those that angles show. Sharp edges are for flat tets of the fast mode, without walls; for
+/// others the level set is one smooth function.
 void CaseRun::smooth_edges() {
   const char* key = keys::reconstruct::edges;
   const bool is_derived = parameters_.source(key) == ParamSource::Derived;
   if (is_derived && parameters_.origin(key) != kLostEdges) parameters_.drop(key);
+  take_given_edges(parameters_);
   if (parameters_.source(key) > ParamSource::Case || request_.until != Stage::Mesh) return;
   const MeshParameters& mesh = parameters_.mesh();
   const char* why = mesh.order > 1                 ? "for --order 2"
@@ -146,7 +148,10 @@ void CaseRun::smooth_edges() {
                     : mesh.box_walls               ? "for --box-walls"
                     : background_file(parameters_) ? "for --background"
                                                    : nullptr;
-  if (why) parameters_.set(key, "off", ParamSource::Derived, why);
+  if (!why) return;
+  if (!parameters_.cloud().features.empty())
+    progress_.warn(fmt::format("mesh: the edges of --features are rounded {}", why));
+  parameters_.set(key, "off", ParamSource::Derived, why);
 }
 
 /// Triangles are sampled as finely as the mesh needs, unless the user sets the spacing. The spacing is a parameter like

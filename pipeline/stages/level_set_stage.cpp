@@ -62,7 +62,7 @@ LevelSetReport write_edges(const StageContext& context, const EdgedTriangles& ed
   curves.chains.resize(curves.graph.curves.size());
   report.shift = edged.shift;
   const StageState state = inspect_stage(context.paths, Stage::Cloud, Json::object(), std::nullopt);
-  const TriangleReport& samples = cloud_report(*state.record).triangles->body;
+  const TriangleReport samples = cloud_report(*state.record).triangles->body;
   report.fit.n_points = samples.n_samples;
   report.fit.cloud_spacing = samples.spacing;
   write_features(context.paths.folder(Stage::LevelSet) / kFeatureFile, curves, edged.shift);
@@ -88,11 +88,8 @@ void run_level_set_stage(const StageContext& context) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<RecordedFile> inputs = recorded_inputs(context.paths, Stage::LevelSet, context.parameters);
   if (EdgedTriangles edged = edges_to_keep(context); edged.body) {
-    const FeatureGraph& graph = *edged.body->graph;
-    context.progress.say(
-        fmt::format("level-set: {} sharp edges, {} corners, {} patches: each patch has a function of "
-                    "its own (--edges off makes one smooth level set)",
-                    graph.curves.size(), graph.corners.size(), edged.body->domain.n_patches()));
+    context.progress.say("level-set: " + edges_text(edged.triangles->edges) +
+                         ": each patch has a function of its own (--edges off makes one smooth level set)");
     begin_writing(context, Stage::LevelSet);
     write_record_of(context, inputs, write_edges(context, edged), start, kFeatureFile);
     context.handover.edged = std::move(edged);

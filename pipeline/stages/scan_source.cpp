@@ -7,6 +7,7 @@
 
 #include "pipeline/case/artefact.h"
 #include "reconstruct/cloud/survey/cloud_survey.h"
+#include "reconstruct/io/feature_lines_io.h"
 #include "reconstruct/triangles/body_samples.h"
 
 namespace umtet {
@@ -83,6 +84,10 @@ std::vector<Message> notices_of(const TrianglesReport& t, const TriangleFileRepo
   if (b.unsure > kUnsure)
     say("the inside is a guess for {:.1f} % of the surface: the winding number is not a whole number there",
         100 * b.unsure);
+  if (file.n_lines > 0) say("{} edges are given by lines of the file", file.n_lines);
+  if (file.n_lines_ignored > 0)
+    say("lines of the file leave the edges of its triangles at {} places: they are ignored there",
+        file.n_lines_ignored);
   if (file.n_groups_ignored > 0)
     say("{} groups or materials, more than {}: they are ignored", file.n_groups_ignored, kMostGroups);
   return list;
@@ -110,12 +115,14 @@ std::vector<RecordedFile> source_inputs(const InputFile& source, const Parameter
                                         : check_scan_head(source, parameters.cloud().columns);
   }
   std::vector<RecordedFile> inputs = {{"source", stamps.of(source)}};
-  const std::string& viewpoints = parameters.cloud().orient_from;
-  if (viewpoints.empty()) return inputs;
-  if (is_too_large_a_text(viewpoints))
-    throw CloudRefused(viewpoints + ": too large for a file of viewpoints with lines x y z");
-  require_regular_file(viewpoints);
-  inputs.push_back({"viewpoints", stamps.of(fs::path(viewpoints))});
+  const auto add = [&](const char* name, const std::string& file, const char* too_large) {
+    if (file.empty()) return;
+    if (is_too_large_a_text(file)) throw CloudRefused(file + too_large);
+    require_regular_file(file);
+    inputs.push_back({name, stamps.of(fs::path(file))});
+  };
+  add("viewpoints", parameters.cloud().orient_from, ": too large for a file of viewpoints with lines x y z");
+  add("features", parameters.cloud().features, ": too large for a file of edges");
   return inputs;
 }
 
@@ -125,11 +132,22 @@ bool is_of_triangles(const InputFile& source, const Parameters& parameters) {
 
 ScanSource read_source(const InputFile& source, const Parameters& parameters, const Context& context) {
   const std::string& columns = parameters.cloud().columns;
-  if (!is_of_triangles(source, parameters)) return {read_scan(source, columns), {}};
+  const fs::path features = parameters.cloud().features;
+  if (!is_of_triangles(source, parameters)) {
+    if (!features.empty())
+      throw CloudRefused(
+          {source.path().string() + ": ", Option{keys::cloud::features}, " applies to triangles, not to points"});
+    return {read_scan(source, columns), {}};
+  }
   if (!columns.empty())
     throw CloudRefused(
         {source.path().string() + ": ", Option{keys::cloud::columns}, " applies to text tables, not to triangles"});
   TriangleFile file = read_triangles(source);
+  std::size_t n_given = 0;
+  if (!features.empty()) {
+    require_regular_file(features);
+    n_given = add_lines(file.mesh, read_feature_lines(features), features);
+  }
   const NormalsOf how = parameters.cloud().normals;
   const Touching touching = parameters.cloud().touching;
   ScanSource scan;
@@ -171,6 +189,7 @@ ScanSource read_source(const InputFile& source, const Parameters& parameters, co
   name_caps(t.report);
   t.boundary = std::move(body.boundary);
   t.notices = notices_of(t.report, file.report, touching);
+  if (n_given > 0) t.notices.emplace_back(fmt::format("{} edges are given by {}", n_given, features.string()));
   return scan;
 }
 

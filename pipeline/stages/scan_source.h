@@ -34,8 +34,9 @@ struct ScanSource {
 /// \throw CloudRefused  a device, a pipe or a folder: their size is unknown; std::system_error
 std::shared_ptr<const InputFile> open_source(const std::filesystem::path& file);
 
-/// Returns the files that 1-cloud reads: the user's cloud, and the viewpoints of cloud.orient_from.
-/// \throw CloudRefused  the beginning of the cloud is not that of a scan, or the viewpoints are not a regular file or
+/// Returns the files that 1-cloud reads: the user's cloud, the viewpoints of cloud.orient_from, and the edges of
+/// cloud.features.
+/// \throw CloudRefused  the beginning of the cloud is not that of a scan, or one of the others is not a regular file or
 ///   too large; std::system_error
 std::vector<RecordedFile> source_inputs(const InputFile& source, const Parameters& parameters, FileStamps& stamps);
 

@@ -15,7 +15,7 @@ for _key in _core.parameters():
     _KEYS.setdefault(_section, {})[_name] = _key
 for _name in ("implicit", "keep_iterates"):  # only for the program
     _KEYS["mesh"].pop(_name, None)
-for _name in ("file", "orient_from"):
+for _name in ("file", "orient_from", "features"):
     _KEYS["cloud"].pop(_name, None)
 _OUTPUT = ("units", "max_memory", "min_quality", "strict", "accept")
 PATCHES = ("patch_angle", "patch_planar")

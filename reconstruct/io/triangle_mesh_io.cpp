@@ -98,6 +98,9 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh) {
   for (const char* name : {"x", "y", "z"}) out << "property double " << name << '\n';
   out << "element face " << mesh.F.size() << "\nproperty list uchar int vertex_indices\n";
   if (has_labels) out << "property int label\n";
+  if (!mesh.lines.empty())
+    out << "element " << detail::kSharpEdges << ' ' << mesh.lines.size()
+        << "\nproperty int vertex1\nproperty int vertex2\n";
   out << "end_header\n";
   std::array<char, 3 * sizeof(double)> row;
   for (const Vec3& x : mesh.V) {
@@ -110,6 +113,11 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh) {
     detail::put(at, std::uint8_t{3});
     for (const int v : mesh.F[f]) detail::put(at, std::int32_t{v});
     if (has_labels) detail::put(at, std::int32_t{mesh.labels[f]});
+    out.write(row.data(), at - row.data());
+  }
+  for (const std::array<int, 2>& line : mesh.lines) {
+    char* at = row.data();
+    for (const int v : line) detail::put(at, std::int32_t{v});
     out.write(row.data(), at - row.data());
   }
 }

@@ -18,6 +18,8 @@ struct TriangleFileReport {
   std::size_t n_faces = 0;               ///< number in the file
   std::size_t n_polygons = 0;            ///< faces with more than three corners, which were cut into triangles
   std::vector<std::string> label_names;  ///< names of labels 1, 2 ...: solids, groups or materials; empty without names
+  std::size_t n_lines = 0;               ///< edges of the surface that the file names as lines
+  std::size_t n_lines_ignored = 0;       ///< places where lines of the file leave the edges of the triangles
   std::size_t n_groups_ignored = 0;      ///< number of groups if above kMostGroups: they are not parts of a boundary
 };
 
@@ -45,10 +47,12 @@ bool holds_triangles(const std::filesystem::path& file, PlyFaces faces = PlyFace
 /// precision.
 ///
 /// - STL: binary is detected by the file size, whatever the first bytes; there may be several solids.
-/// - OBJ: v and f with negative and all other kinds of indices, and lines continued after a backslash. Lines, curves
-///   and texture coordinates are skipped. Materials are only names: no other file is opened.
+/// - OBJ: v and f with negative and all other kinds of indices, and lines continued after a backslash. Statements l
+///   that run along edges of the triangles become lines of the mesh. Curves and texture coordinates are skipped.
+///   Materials are only names: no other file is opened.
 /// - OFF: also with colours, normals and texture coordinates.
-/// - PLY: as read_scan(), and the list vertex_indices or vertex_index.
+/// - PLY: as read_scan(), and the list vertex_indices or vertex_index. An element sharp_edge with vertex1 and vertex2
+///   becomes lines of the mesh.
 ///
 /// Polygons, also concave ones, are cut into triangles inside of them. Vertices without a face are dropped.
 ///
@@ -68,8 +72,8 @@ TriangleFile read_triangles(const std::filesystem::path& file);
 /// Checks the first megabyte of a file, and rejects what read_triangles() would reject there. \throw CloudRefused
 void check_triangles_head(const InputFile& file);
 
-/// Writes binary little-endian PLY: double x y z, vertex_indices of int and, if present, int label. read_triangles()
-/// returns the same mesh. The caller owns the stream and checks it.
+/// Writes binary little-endian PLY: double x y z, vertex_indices of int and, if present, int label and an element
+/// sharp_edge. read_triangles() returns the same mesh. The caller owns the stream and checks it.
 void write_ply(std::ostream&, const TriangleMesh&);
 
 }  // namespace umtet

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "common/formatted.h"
 #include "reconstruct/triangles/body_thickness.h"
 #include "reconstruct/triangles/cut_triangles.h"
+#include "reconstruct/triangles/feature_lines.h"
 #include "reconstruct/triangles/triangle_samples.h"
 #include "reconstruct/triangles/triangle_tree.h"
 #include "reconstruct/triangles/triangle_winding.h"
@@ -98,8 +100,22 @@ std::vector<Share> shares_on_boundary(const TriangleMesh& mesh, const TriangleSa
   return share;
 }
 
-/// Those that lie on the boundary or cross it, with the vertices that they use; the label is 1 for the former, else 0.
-TriangleMesh on_boundary(const TriangleMesh& mesh, const std::vector<Share>& share) {
+/// Returns the group of each triangle, see group_of().
+std::vector<int> groups_of(const TriangleMesh& mesh, bool has_groups) {
+  std::vector<int> groups(mesh.F.size(), 0);
+  if (!has_groups) return groups;
+  std::vector<int> different = mesh.labels;
+  std::sort(different.begin(), different.end());
+  different.erase(std::unique(different.begin(), different.end()), different.end());
+  if (different.size() > kMostGroupsOfBody) return groups;
+  std::transform(mesh.labels.begin(), mesh.labels.end(), groups.begin(),
+                 [](int label) { return std::clamp(label, 0, std::numeric_limits<int>::max() - 1); });
+  return groups;
+}
+
+/// Those that lie on the boundary or cross it, with the vertices that they use.
+TriangleMesh on_boundary(const TriangleMesh& mesh, const std::vector<Share>& share, bool has_groups) {
+  const std::vector<int> groups = groups_of(mesh, has_groups);
   TriangleMesh some;
   std::vector<int> number(mesh.V.size(), -1);
   for (std::size_t f = 0; f < mesh.F.size(); ++f) {
@@ -113,8 +129,9 @@ TriangleMesh on_boundary(const TriangleMesh& mesh, const std::vector<Share>& sha
       v = number[v];
     }
     some.F.push_back(triangle);
-    some.labels.push_back(share[f] == Share::All ? 1 : 0);
+    some.labels.push_back(share[f] == Share::All ? groups[f] + 1 : -groups[f]);
   }
+  some.lines = renumbered_lines(mesh.lines, number);
   return some;
 }
 
@@ -285,6 +302,7 @@ BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params, const
   report.dropped = drop_useless_faces(mesh);
   if (mesh.F.empty()) throw std::invalid_argument("no triangle has an area");
   const std::size_t n_given = mesh.F.size();
+  const bool has_groups = !mesh.labels.empty();
   close_and_turn(params, context, mesh, report);
   report.spacing = default_spacing(mesh);
   if (params.spacing > 0) report.spacing = std::min(report.spacing, params.spacing);
@@ -322,7 +340,7 @@ BodySamples sample_body(TriangleMesh mesh, const BodySampleParams& params, const
     if (!mesh.labels.empty()) made.cloud.labels.push_back(mesh.labels[samples.faces[i]]);
   }
   report.unsure = static_cast<double>(n_unsure) / static_cast<double>(place.size());
-  made.boundary = on_boundary(mesh, shares_on_boundary(mesh, samples, place, w, context));
+  made.boundary = on_boundary(mesh, shares_on_boundary(mesh, samples, place, w, context), has_groups);
   return made;
 }
 

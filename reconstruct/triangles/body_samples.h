@@ -48,12 +48,20 @@ struct NoBody : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// A triangle on the boundary of a body has the label group + 1, or -group if a part of it is inside the body. Its
+/// group is its label in the input if that is positive, else 0; all groups are 0 without labels in the input, or with
+/// more than kMostGroupsOfBody different ones.
+inline constexpr std::size_t kMostGroupsOfBody = 1000;
+inline bool is_partly_inside(int label) { return label <= 0; }
+inline int group_of(int label) { return label <= 0 ? -label : label - 1; }
+
 /// The boundary of the body bounded by triangles, sampled as a scan.
 struct BodySamples {
   /// With labels if the triangles have labels, or an opening was closed. The first cap has the least label above all
   /// others, the next caps follow, and triangles without a label then have label 1.
   OrientedPointCloud cloud;
-  TriangleMesh boundary;  ///< the triangles on the boundary, outward; label 0: only a part of the triangle is on it
+  /// The triangles on the boundary, outward, with the lines of the input. Labels are those of group_of().
+  TriangleMesh boundary;
   TriangleReport report;
 };
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "common/disjoint_sets.h"
@@ -27,6 +28,10 @@ constexpr double kLikeTurn = 2, kLikeDistance = 3, kLeastCos = .49;
 constexpr double kBeside = .5;
 // The facets of a curved surface consist of few triangles; this bounds the work at a plane of many.
 constexpr std::size_t kMostTriangles = 16;
+// A staircase: the least number of its edges, their largest mean length as a share of the diagonal, half of the default
+// edge length of meshes with sharp edges, and the share of its vertices that turn back.
+constexpr std::size_t kFewestStairs = 12;
+constexpr double kStair = .02, kBackAndForth = .25;
 
 /// An edge of two triangles, or of more.
 struct Edge {
@@ -36,11 +41,20 @@ struct Edge {
   bool is_branching;
 };
 
+/// Why an edge is sharp.
+enum class Why : std::uint8_t { Smooth, Turn, Line, Border };
+
 double turn_of(const TriangleMesh& mesh, const EdgeUse& one, const EdgeUse& two) {
   const Vec3 m = mesh.area_vector(one.face).normalized(), n = mesh.area_vector(two.face).normalized();
   const double angle = std::atan2(m.cross(n).norm(), m.dot(n)) / kRadians;
   const bool is_convex = m.dot(mesh.centroid(two.face) - mesh.V[static_cast<std::size_t>(one.low)]) < 0;
   return is_convex ? angle : -angle;
+}
+
+SharpCurve::Reason reason_of(Why why) {
+  return why == Why::Border ? SharpCurve::Reason::Border
+         : why == Why::Line ? SharpCurve::Reason::Line
+                            : SharpCurve::Reason::Turn;
 }
 
 class Finder {
@@ -51,12 +65,13 @@ class Finder {
   SharpEdges find() {
     list_edges();
     choose();
+    drop_staircases();
     while (drop_loose_curves()) {
     }
     trace(true);
     SharpEdges found{curves_, corners_, std::vector<std::size_t>(mesh_.F.size()), 0};
     for (const Edge& e : edges_) {
-      if (!is_sharp_[static_cast<std::size_t>(&e - edges_.data())]) patches_.unite(e.left, e.right);
+      if (is_sharp_[static_cast<std::size_t>(&e - edges_.data())] == Why::Smooth) patches_.unite(e.left, e.right);
     }
     std::vector<std::size_t> number(mesh_.F.size());
     for (std::size_t f = 0; f < mesh_.F.size(); ++f) {
@@ -78,23 +93,31 @@ class Finder {
   bool is_corner(int v, bool at_kinks) const;
   std::optional<double> turn_of_curve(int v) const;
   int other_end(std::size_t e, int v) const { return edges_[e].a == v ? edges_[e].b : edges_[e].a; }
+  void drop_staircases();
+  bool is_staircase(const SharpCurve& curve) const;
   bool drop_loose_curves();
 
   const TriangleMesh& mesh_;
   const SharpEdgeParams& params_;
   DisjointSets patches_;
   std::vector<Edge> edges_;
-  std::vector<std::uint8_t> is_sharp_;
+  std::set<std::pair<int, int>> lines_;  ///< welded vertices, ascending
+  std::vector<Why> is_sharp_;
   std::vector<std::vector<std::size_t>> edges_of_;    ///< by triangle
   std::vector<std::uint8_t> is_in_plane_;             ///< by triangle: with a neighbour
   std::map<int, std::vector<std::size_t>> sharp_at_;  ///< vertex -> sharp edges
   std::vector<SharpCurve> curves_;
   std::vector<std::vector<std::size_t>> edges_of_curves_;
   std::vector<int> corners_;
+  double diagonal_ = 0;
 };
 
 void Finder::list_edges() {
-  const std::vector<EdgeUse> uses = edge_uses(mesh_, welded(mesh_.V, find_patches(mesh_).weld_distance));
+  const std::vector<int> corner = welded(mesh_.V, find_patches(mesh_).weld_distance);
+  if (params_.by_user) {
+    for (const auto& [a, b] : mesh_.lines) lines_.insert(std::minmax(corner[a], corner[b]));
+  }
+  const std::vector<EdgeUse> uses = edge_uses(mesh_, corner);
   for_each_edge(uses, [&](std::size_t first, std::size_t last) {
     if (last - first < 2) return;
     const EdgeUse &one = uses[first], &two = uses[first + 1];
@@ -115,10 +138,19 @@ void Finder::choose() {
   }
   is_sharp_.resize(edges_.size());
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const double turn = std::abs(edges_[e].turn);
-    const bool is_sharp = edges_[e].is_branching || turn >= params_.sure_turn ||
-                          (turn >= params_.least_turn && !turns_like_its_neighbours(e));
-    is_sharp_[e] = is_sharp ? 1 : 0;
+    const Edge& edge = edges_[e];
+    const double turn = std::abs(edge.turn);
+    const bool turns =
+        params_.by_turn && (turn >= params_.sure_turn || (turn >= params_.least_turn && !turns_like_its_neighbours(e)));
+    if (edge.is_branching || turns) {
+      is_sharp_[e] = Why::Turn;
+    } else if (lines_.contains({edge.a, edge.b})) {
+      is_sharp_[e] = Why::Line;
+    } else if (params_.by_user && !mesh_.labels.empty() &&
+               mesh_.labels[static_cast<std::size_t>(edge.left)] !=
+                   mesh_.labels[static_cast<std::size_t>(edge.right)]) {
+      is_sharp_[e] = Why::Border;
+    }
   }
 }
 
@@ -203,13 +235,13 @@ void Finder::trace(bool ends_at_kinks) {
   edges_of_curves_.clear();
   corners_.clear();
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    if (!is_sharp_[e]) continue;
+    if (is_sharp_[e] == Why::Smooth) continue;
     sharp_at_[edges_[e].a].push_back(e);
     sharp_at_[edges_[e].b].push_back(e);
   }
   std::vector<std::uint8_t> is_used(edges_.size(), 0);
   const auto follow = [&](int start, std::size_t first) {
-    SharpCurve curve{{start}, 0};
+    SharpCurve curve{.vertices = {start}, .reason = SharpCurve::Reason::Border};
     std::vector<std::size_t> own;
     for (std::size_t e = first;;) {
       is_used[e] = 1;
@@ -217,6 +249,7 @@ void Finder::trace(bool ends_at_kinks) {
       const int v = curve.vertices.back(), w = edges_[e].a == v ? edges_[e].b : edges_[e].a;
       curve.vertices.push_back(w);
       curve.length += (at(w) - at(v)).norm();
+      curve.reason = std::min(curve.reason, reason_of(is_sharp_[e]));
       if (w == start || is_corner(w, ends_at_kinks)) break;
       const std::vector<std::size_t>& next = sharp_at_.at(w);
       e = next[0] == e ? next[1] : next[0];
@@ -232,7 +265,34 @@ void Finder::trace(bool ends_at_kinks) {
     }
   }
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    if (is_sharp_[e] && !is_used[e]) follow(edges_[e].a, e);
+    if (is_sharp_[e] != Why::Smooth && !is_used[e]) follow(edges_[e].a, e);
+  }
+}
+
+/// A border between labels that follows the triangles of a scan.
+bool Finder::is_staircase(const SharpCurve& curve) const {
+  const std::size_t n = curve.vertices.size() - 1;
+  if (curve.reason != SharpCurve::Reason::Border || n < kFewestStairs) return false;
+  if (curve.length > kStair * diagonal_ * static_cast<double>(n)) return false;
+  std::size_t n_back = 0;
+  Vec3 last = Vec3::Zero();
+  for (std::size_t k = 1; k < n; ++k) {
+    const Vec3 in = at(curve.vertices[k]) - at(curve.vertices[k - 1]),
+               out = at(curve.vertices[k + 1]) - at(curve.vertices[k]), axis = in.cross(out);
+    const bool is_kink = std::atan2(axis.norm(), in.dot(out)) >= params_.kink_turn * kRadians;
+    if (is_kink && axis.dot(last) < 0) ++n_back;
+    last = is_kink ? axis : Vec3::Zero();
+  }
+  return static_cast<double>(n_back) > kBackAndForth * static_cast<double>(n);
+}
+
+void Finder::drop_staircases() {
+  if (mesh_.labels.empty() || !params_.by_user) return;
+  diagonal_ = diagonal_of(mesh_);
+  trace(false);
+  for (std::size_t c = 0; c < curves_.size(); ++c) {
+    if (!is_staircase(curves_[c])) continue;
+    for (const std::size_t e : edges_of_curves_[c]) is_sharp_[e] = Why::Smooth;
   }
 }
 
@@ -243,11 +303,13 @@ bool Finder::drop_loose_curves() {
   DisjointSets networks(mesh_.V.size());
   std::map<int, std::size_t> n_edges;
   std::map<int, double> length;
+  std::set<int> is_wanted;  // by the user: networks with lines and borders
   for (const SharpCurve& curve : curves_) {
     for (const int v : curve.vertices) networks.unite(curve.vertices.front(), v);
   }
   for (const SharpCurve& curve : curves_) {
     const int network = networks.find(curve.vertices.front());
+    if (curve.reason != SharpCurve::Reason::Turn) is_wanted.insert(network);
     n_edges[network] += curve.vertices.size() - 1;
     length[network] += curve.length;
   }
@@ -259,8 +321,9 @@ bool Finder::drop_loose_curves() {
     const bool is_short = curve.length < least || curve.vertices.size() <= params_.fewest_edges;
     const int network = networks.find(curve.vertices.front());
     const bool is_speck = n_edges[network] < params_.fewest_edges && length[network] < least;
-    if (!(has_loose_end && is_short) && !is_speck) continue;
-    for (const std::size_t e : edges_of_curves_[c]) is_sharp_[e] = 0;
+    if (!(has_loose_end && is_short) && !(is_speck && !is_wanted.contains(network))) continue;
+    if (curve.reason == SharpCurve::Reason::Line) continue;
+    for (const std::size_t e : edges_of_curves_[c]) is_sharp_[e] = Why::Smooth;
     has_dropped = true;
   }
   return has_dropped;
@@ -271,6 +334,11 @@ bool Finder::drop_loose_curves() {
 double SharpEdges::length() const {
   return std::accumulate(curves.begin(), curves.end(), 0.,
                          [](double sum, const SharpCurve& curve) { return sum + curve.length; });
+}
+
+std::size_t SharpEdges::n_curves_by(SharpCurve::Reason reason) const {
+  return static_cast<std::size_t>(
+      std::count_if(curves.begin(), curves.end(), [&](const SharpCurve& c) { return c.reason == reason; }));
 }
 
 SharpEdges find_sharp_edges(const TriangleMesh& mesh, const SharpEdgeParams& params) {

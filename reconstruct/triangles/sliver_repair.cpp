@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,12 @@ class SliverRepair {
     const std::vector<int> first = welded(mesh.V, 0);
     for (Triangle& t : mesh.F)
       for (int& v : t) v = first[v];
+    for (const auto& [a, b] : mesh.lines) lines_.insert(std::minmax(first[a], first[b]));
+  }
+
+  void store_lines() {
+    mesh_.lines.clear();
+    for (const auto& [a, b] : lines_) mesh_.lines.push_back({a, b});
   }
 
   std::size_t pass() {
@@ -89,6 +96,8 @@ class SliverRepair {
       for (const std::size_t g : around_[b])
         for (int& v : mesh_.F[g])
           if (v == b) v = a;
+      for (const int w : of_b)
+        if (lines_.erase(std::minmax(b, w)) > 0 && w != a) lines_.insert(std::minmax(a, w));
       return true;
     }
     return false;
@@ -113,6 +122,8 @@ class SliverRepair {
         for (const std::size_t i : around_[v]) is_locked_[i] = 1;
     mesh_.F[f] = one;
     mesh_.F[g] = other;
+    if (!mesh_.labels.empty()) mesh_.labels[f] = mesh_.labels[g];  // nothing of the sliver is to be seen
+    if (lines_.erase(std::minmax(a, b)) > 0) lines_.insert({std::minmax(a, c), std::minmax(c, b)});
     return true;
   }
   int other_corner(std::size_t g, int a, int b) const {
@@ -135,6 +146,7 @@ class SliverRepair {
 
   TriangleMesh& mesh_;
   const double tolerance_;
+  std::set<std::pair<int, int>> lines_;
   std::map<std::pair<int, int>, std::vector<std::size_t>> faces_;
   std::vector<std::vector<std::size_t>> around_;  ///< triangles at each vertex
   std::vector<std::uint8_t> is_locked_, is_gone_;
@@ -150,6 +162,7 @@ std::size_t remove_slivers(TriangleMesh& mesh, double tolerance) {
     if (n == 0) break;
     n_all += n;
   }
+  repair.store_lines();
   return n_all;
 }
 

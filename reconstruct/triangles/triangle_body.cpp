@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "reconstruct/triangles/body_samples.h"
 #include "reconstruct/triangles/face_patches.h"
 #include "reconstruct/triangles/triangle_winding.h"
 
@@ -95,7 +96,7 @@ TriangleBody measure_body(const TriangleMesh& boundary, const Context& context) 
   body.n_pieces = patches.size();
   body.euler_characteristic = static_cast<long>(n_corners(boundary, corner, patches.patch)) -
                               static_cast<long>(edges.n) + static_cast<long>(boundary.F.size());
-  const bool are_whole = std::find(boundary.labels.begin(), boundary.labels.end(), 0) == boundary.labels.end();
+  const bool are_whole = std::none_of(boundary.labels.begin(), boundary.labels.end(), is_partly_inside);
   body.is_manifold = are_whole && edges.are_shared && edges.are_balanced;
   body.is_closed = are_whole && (edges.are_balanced || winds_once(boundary, context));
   return body;

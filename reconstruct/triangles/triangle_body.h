@@ -22,8 +22,8 @@ struct TriangleBody {
   long genus() const { return static_cast<long>(n_pieces) - euler_characteristic / 2; }  ///< sum over components
 };
 
-/// Measures triangles that bound a body, outward, as made by sample_body(). Triangles with label 0 are on the boundary
-/// only in part, for example where bodies overlap; then volume and topology differ from the body.
+/// Measures triangles that bound a body, outward, as made by sample_body(). Triangles with is_partly_inside() are on
+/// the boundary only in part, for example where bodies overlap; then volume and topology differ from the body.
 ///
 /// Triangles are in one component if they share an edge of two triangles (face_patches.h). Bodies that touch along an
 /// edge or at a corner are therefore separate components, and a corner counts once per component.

@@ -22,7 +22,9 @@ TARGETS = {".stl": "triangles_stl", ".obj": "triangles_obj", ".off": "triangles_
            ".asc": "cloud_xyz", ".vti": "level_set",
            ".vtu": "mesh_vtu", ".msh": "mesh_msh", ".mesh": "mesh_mesh",
            ".nrrd": "grid_nrrd", ".nii": "grid_nifti", ".vtk": "grid_vtk",
+           ".feat": "lines", ".eMesh": "lines", ".lines": "lines",  # of OBJ
            ".grid": "grid_vti"}  # ImageData, which has any name here: .vti is that of our own level sets
+EDGES = (".feat", ".eMesh", ".lines")  # of the cube of TRIANGLES
 GRIDS = (".nrrd", ".nii", ".vtk", ".grid")
 
 
@@ -627,6 +629,71 @@ def obj_text(vertices=CORNERS, faces=TRIANGLES, more=""):
             "".join(f"f {' '.join(str(v + 1) for v in f)}\n" for f in faces)).encode()
 
 
+def feat_cases():
+    good = "feat 2\n# two edges\n3\n0 0 0\n0 0 1\n0 1 1\n\n2\n1 0 0\n1 1 0\n"
+    yield "edges", good.encode(), None
+    yield "crlf", good.replace("\n", "\r\n").encode(), None
+    yield "repeated", ("feat 3\n" + good[7:] + "2\n1 1 0\n1 0 0\n").encode(), None
+    yield "subdivided", good.replace("0 0 1\n", "0 0 .25\n0 0 1\n").replace("\n3\n", "\n4\n").encode(), None
+    yield "cut", good[:-6].encode(), ["line 9", "polyline 2 of 2", "cut short"]
+    yield "no_polyline", b"feat 0\n", ["no line of two points"]
+    yield "point", b"feat 1\n1\n0 0 0\n", ["no line of two points"]
+    yield "word_only", b"feat", ["number of polylines", "cut short"]
+    for count in ("18446744073709551615", "4000000000"):
+        yield f"count_{count}", good.replace("feat 2", "feat " + count).encode(), ["polyline 3 of " + count, "cut short"]
+        yield f"points_{count}", good.replace("\n3\n", f"\n{count}\n").encode(), ["line 8", "point 4 of " + count]
+    yield "negative", good.replace("\n3\n", "\n-3\n").encode(), ["line 3", "'-3'"]
+    yield "trailing", (good + "1\n").encode(), ["line 11", "2 polylines"]
+    yield "word", good.replace("0 0 1", "0 zero 1").encode(), ["line 5", "'zero'"]
+    yield "commas", good.replace("0 0 1", "0 0,5 1").encode(), ["line 5", "decimal comma"]
+    yield "nan", good.replace("0 0 1", "0 nan 1").encode(), ["line 5", "NaN"]
+    yield "huge_number", good.replace("0 0 1", "0 1e60 1").encode(), ["line 5", "1e50"]
+    yield "far", good.replace("0 0 1", "0 0 3").encode(), ["line 5", "2 from the triangles"]
+    yield "through", good.replace("1 1 0", "0 1 1").encode(), ["no edge of the triangles"]
+    yield "in_a_side", good.replace("1 1 0", "1 .5 .3").encode(), ["line 10", "a line ends there"]
+    yield "binary", b"feat 1\n" + random.Random(7).randbytes(5000), ["line "]
+
+
+def emesh_cases():
+    head = "FoamFile\n{\n    version 2.0;\n    format ascii;\n    class featureEdgeMesh;\n    object e;\n}\n"
+    lists = "3\n(\n(0 0 0)\n(0 0 1)\n(0 1 1)\n)\n2\n(\n(0 1)\n(1 2)\n)\n"
+    good = "/* a banner\n of two lines */\n" + head + "// ***** //\n" + lists
+    yield "edges", good.encode(), None
+    yield "one_line", (head + lists).replace("\n", " ").encode(), None
+    yield "no_counts", (head + lists.replace("3\n(\n", "(").replace("2\n(\n", "(")).encode(), None
+    yield "extended", (head.replace("feature", "extendedFeature") + lists + "0\n0\n4{0}\n").encode(), None
+    yield "repeated", (head + lists.replace("2\n(\n", "4\n(\n(1 0)\n(2 2)\n")).encode(), None
+    yield "cut", good[:-4].encode(), ["line ", "cut short"]
+    yield "header_cut", head[:30].encode(), ["header", "cut short"]
+    yield "comment_cut", b"/* FoamFile", ["before 'FoamFile'"]
+    for count in ("18446744073709551615", "4000000000"):
+        yield f"count_{count}", (head + lists.replace("3\n(", count + "\n(")).encode(), ["item 4 of " + count]
+        yield f"edges_{count}", (head + lists.replace("2\n(", count + "\n(")).encode(), ["item 3 of " + count]
+    yield "few_announced", (head + lists.replace("2\n(", "1\n(")).encode(), ["line 17", "end of the list of edges"]
+    for index in ("3", "-1", "99999999999999999999", "1.5"):
+        yield f"index_{index}", (head + lists.replace("(1 2)", f"(1 {index})")).encode(), ["line 17", f"'{index}' is no point, of 3"]
+    yield "binary", (head.replace("ascii", "binary") + "3(").encode() + bytes(72), ["line 4", "'binary'", "writeFormat ascii"]
+    yield "class", (head.replace("featureEdgeMesh", "vectorField") + lists).encode(), ["line 5", "'vectorField'"]
+    yield "no_edges", (head + "3((0 0 0)(0 0 1)(0 1 1)) 0()").encode(), ["no line of two points"]
+    yield "uniform", (head + "3{(0 0 0)} 1((0 1))").encode(), ["'{'"]
+    yield "word", (head + lists.replace("(0 0 1)", "(0 x 1)")).encode(), ["line 11", "'x'"]
+    yield "trailing", (head + lists + "7").encode(), ["'7' after the list"]
+    yield "random", b"FoamFile {} " + random.Random(8).randbytes(5000), ["line "]
+
+
+def line_cases():
+    vertices = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS)
+    yield "edges", (vertices + "l 1 2 4\nl 5 7\n").encode(), None
+    yield "of_a_surface", obj_text(more="l 1 2\nl -8 -4\n"), None
+    yield "no_lines", obj_text(), ["no line of two points"]
+    yield "index_0", (vertices + "l 0 1\n").encode(), ["line 9", "'0'"]
+    yield "index_9", (vertices + "l 1 9\n").encode(), ["line 9", "no vertex 9, of 8"]
+    yield "one_point", (vertices + "l 1\n").encode(), ["line 9", "two at least"]
+    yield "across", (vertices + "l 1 8\n").encode(), ["line 9", "no edge of the triangles"]
+    yield "none_of_these", b"edges of a part\n", ["begins like none"]
+    yield "empty", b"\n \n", ["empty"]
+
+
 def obj_cases():
     good = obj_text()
     yield "triangles", good, None
@@ -781,6 +848,7 @@ HUGE = [
     ("faces.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\n"
                   b"property float z\nelement face 99999999999\nproperty list uchar int vertex_index\nend_header\n",
      ["99999999999 x vertex"]),
+    ("zeros.feat", b"feat 1\n", ["too large for a file of edges"]),
     ("zeros.vtu", b"", ["no <VTKFile"]),
     ("zeros.msh", b"", ["no $MeshFormat"]),
     ("zeros.mesh", b"", ["no MeshVersionFormatted"]),
@@ -800,6 +868,7 @@ def made_cases():
                            (".las", las_cases), (".e57", e57_cases), (".points", unknown_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".vtu", vtu_cases),
                            (".nrrd", nrrd_cases), (".nii", nifti_cases), (".vtk", vtk_cases), (".grid", image_cases),
                            (".stl", stl_cases), (".obj", obj_cases), (".off", off_cases),
+                           (".feat", feat_cases), (".eMesh", emesh_cases), (".lines", line_cases),
                            (".tets", other_cases)):
         for name, data, words, *strict in family():
             yield Case(name + suffix, data, words, *(strict or [words]))

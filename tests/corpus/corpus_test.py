@@ -83,6 +83,12 @@ def main():
             # The readers are asked below: of meshes, and of clouds in a whole run, some files are enough here.
             some, is_cloud = case.is_huge or n % 4 == 0, file.suffix not in (*MESHES, *cases.GRIDS, ".vti")
             calls = []
+            if file.suffix in cases.EDGES:
+                cube = folder / "cube.of.edges.obj"
+                cube.write_bytes(cases.obj_text())
+                if case.words is not None:
+                    calls.append(["inspect", str(cube), "--features", str(file)])
+                is_cloud = False
             # Of triangles that are accepted samples are taken, which takes longer.
             if is_cloud and not (case.words is None and ((case.target or "").startswith("triangles") or file.suffix in TRIANGLES)):
                 calls.append(["inspect", str(file)])

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mesh/io/tet_mesh_io.h"
+#include "reconstruct/io/feature_lines_io.h"
 #include "reconstruct/io/grid_io.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
@@ -25,6 +26,18 @@ void answer(const std::filesystem::path& file, const char* reader, Read read) {
   std::printf("%s\t%s\t%s\n", file.c_str(), reader, text.c_str());
 }
 
+/// The triangles of the lines in the corpus.
+umtet::TriangleMesh cube() {
+  umtet::TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.V.emplace_back(i >> 2 & 1, i >> 1 & 1, i & 1);
+  const int sides[][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+  for (const auto& [a, b, c, d] : sides) {
+    mesh.F.push_back({a, b, c});
+    mesh.F.push_back({a, c, d});
+  }
+  return mesh;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,6 +50,11 @@ int main(int argc, char** argv) {
       answer<umtet::LevelSetRefused>(file, "read_level_set", umtet::read_level_set);
     } else if (kind == ".nrrd" || kind == ".nii" || kind == ".vtk" || kind == ".grid") {
       answer<umtet::GridRefused>(file, "read_grid", [](const auto& path) { return umtet::read_grid(path); });
+    } else if (kind == ".feat" || kind == ".eMesh" || kind == ".lines") {
+      answer<umtet::CloudRefused>(file, "read_feature_lines", [](const std::filesystem::path& path) {
+        umtet::TriangleMesh mesh = cube();
+        return umtet::add_lines(mesh, umtet::read_feature_lines(path), path);
+      });
     } else if (umtet::holds_triangles(file)) {
       answer<umtet::CloudRefused>(file, "read_triangles", [](const auto& path) { return umtet::read_triangles(path); });
     } else {

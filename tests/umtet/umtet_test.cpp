@@ -308,6 +308,41 @@ TEST(Umtet, ABodyWithSharpEdgesHasThemAndItsCertificateIsThatOfTheProgram) {
   EXPECT_EQ(patches_of(mesh), patches_of_medit(exported.front()));
 }
 
+TEST(Umtet, BordersOfLabelsAndLinesAreExactInTheMesh) {
+  Options options;
+  options.body.mesh.h = .1;
+  options.patches.names = {{1, "wall"}, {2, "inlet"}};
+  TriangleMesh labelled = test::cube_with_imprint();
+  TriangleMesh lined = labelled;
+  lined.labels.clear();
+  lined.lines = {{8, 9}, {9, 10}, {10, 11}, {11, 8}};
+  for (const TriangleMesh& given : {labelled, lined}) {
+    const Mesh mesh = mesh_body(given, options);
+    EXPECT_EQ(mesh.curves.size(), 16U);
+    std::map<std::string, double> area;
+    for (std::size_t f = 0; f < mesh.boundary.size(); ++f) {
+      const auto& [a, b, c] = mesh.boundary[f];
+      area[mesh.patches[static_cast<std::size_t>(mesh.face_patch[f])].name] +=
+          (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).norm() / 2;
+    }
+    if (!given.labels.empty()) {
+      EXPECT_EQ(area.size(), 2U);
+      EXPECT_NEAR(area["inlet"], .16, 1e-9);
+      EXPECT_NEAR(area["wall"], 5.84, 1e-9);
+    } else {
+      EXPECT_EQ(area.size(), 7U);
+      std::vector<double> all;
+      for (const auto& [name, value] : area) all.push_back(value);
+      std::sort(all.begin(), all.end());
+      EXPECT_NEAR(all[0], .16, 1e-9);
+      EXPECT_NEAR(all[1], .84, 1e-9);
+      EXPECT_NEAR(all[2], 1, 1e-9);
+    }
+  }
+  lined.lines.push_back({0, 12});
+  EXPECT_THROW(mesh_body(lined, options), std::invalid_argument);
+}
+
 TEST(Umtet, WhatHasNoMeshIsAnErrorWithEvidence) {
   Options options;
   options.box = Box(Vec3::Constant(-1), Vec3::Constant(1));

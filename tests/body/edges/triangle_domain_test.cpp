@@ -73,6 +73,7 @@ struct Law {
   double h;
   std::size_t curves, corners;
   double volume_tolerance;
+  double least_quality = .75;
 };
 
 /// A mesh has every curve and corner of the triangles, and their volume.
@@ -87,7 +88,9 @@ void expect_all_features(const Law& law, const TriangleMesh& mesh) {
   ASSERT_EQ(made.status, UmStatus::Success);
   for (const FeatureDefect& d : made.defects) ADD_FAILURE() << to_string(d.kind) << " at " << d.where.transpose();
   const FeatureMeasures m = measure_features(body->domain, made);
-  EXPECT_EQ(m.n_missed_corners + m.n_missed_curves + m.n_faces_without_patch, 0u);
+  EXPECT_EQ(m.n_missed_corners + m.n_missed_curves + m.n_faces_without_patch, 0u)
+      << m.n_missed_corners << " corners, " << m.n_missed_curves << " curves, " << m.n_faces_without_patch << " faces";
+  EXPECT_EQ(m.missed_length, 0);
   EXPECT_LE(m.farthest_vertex, 1e-8);
   EXPECT_GT(m.least_cosine, .9);
   CertificateInput input;
@@ -102,7 +105,7 @@ void expect_all_features(const Law& law, const TriangleMesh& mesh) {
   }
   const double given = volume_of(mesh);
   EXPECT_NEAR(volume, given, law.volume_tolerance * given);
-  EXPECT_GE(least, .75);
+  EXPECT_GE(least, law.least_quality);
 }
 
 TEST(TriangleDomain, MeshesHaveEveryEdgeInAnyPosition) {
@@ -111,6 +114,36 @@ TEST(TriangleDomain, MeshesHaveEveryEdgeInAnyPosition) {
                       {"cylinder", cylinder(48), .2, 2, 0, .01}};
   for (const Law& law : laws) {
     for (unsigned seed = 0; seed < 4; ++seed) {
+      SCOPED_TRACE(std::string(law.name) + " " + std::to_string(seed));
+      expect_all_features(law, placed(law.mesh, random_placement(seed, law.h)));
+    }
+  }
+}
+
+TEST(TriangleDomain, MeshesHaveFlatBordersAndLines) {
+  TriangleMesh imprint = test::cube_with_imprint();
+  TriangleMesh open = imprint;
+  open.labels.clear();
+  open.lines = {{8, 9}, {9, 10}};  // ends in the side
+  TriangleMesh cross = imprint;    // four curves meet in the middle of a side
+  cross.F.resize(cross.F.size() - 2);
+  cross.labels.clear();
+  cross.V.emplace_back(.5, .5, 1);
+  for (int k = 0; k < 4; ++k) {
+    cross.F.push_back({8 + k, 8 + (k + 1) % 4, 12});
+    cross.lines.push_back({8 + k, 12});
+  }
+  // A border along a cylinder, and one across it.
+  TriangleMesh half = cylinder(48);
+  for (std::size_t f = 0; f < half.F.size(); ++f) half.labels.push_back(half.centroid(f).y() > 0 ? 2 : 1);
+  // A face between two flat curves that meet is on either patch as far as its strata show, and no flip changes it: the
+  // least Q of the imprint is .71 in 4 of 18 positions.
+  const Law laws[] = {{"imprint", imprint, .08, 16, 12, 1e-12, .7},
+                      {"open", open, .08, 14, 11, 1e-12},
+                      {"cross", cross, .08, 16, 13, 1e-12},
+                      {"half", half, .2, 8, 4, .01}};
+  for (const Law& law : laws) {
+    for (unsigned seed = 0; seed < 2; ++seed) {
       SCOPED_TRACE(std::string(law.name) + " " + std::to_string(seed));
       expect_all_features(law, placed(law.mesh, random_placement(seed, law.h)));
     }

@@ -12,11 +12,14 @@ namespace {
 
 class EdgedTriangles : public Program {
  protected:
+  /// Triangles in order of their labels; each label is a solid.
   void write_stl(const std::string& name, const TriangleMesh& mesh) const {
     std::ofstream out(folder / name);
     out.precision(17);
     out << "solid part\n";
     for (std::size_t f = 0; f < mesh.F.size(); ++f) {
+      if (f > 0 && !mesh.labels.empty() && mesh.labels[f] != mesh.labels[f - 1])
+        out << "endsolid\nsolid inlet_" << mesh.labels[f] << '\n';
       out << "facet normal 0 0 0\nouter loop\n";
       for (int k = 0; k < 3; ++k) out << "vertex " << mesh.corner(f, k).transpose() << '\n';
       out << "endloop\nendfacet\n";
@@ -134,6 +137,52 @@ TEST_F(EdgedTriangles, AMeshWithEdgesThatFailsIsMadeAgainWithoutThem) {
   const Result asked = run("run block.stl -o asked --no-report --h .12 --edges auto");
   EXPECT_EQ(asked.code, 6) << asked.out;
   EXPECT_TRUE(certificate_of("asked").contains("features"));
+}
+
+TEST_F(EdgedTriangles, BordersOfSolidsAreEdgesAndNameThePatches) {
+  write_stl("cube.stl", test::cube_with_imprint());
+  const Result seen = run("inspect cube.stl");
+  EXPECT_NE(seen.out.find("16 sharp edges, 12 corners, 7 patches, 4 of the edges from the file's groups"),
+            std::string::npos)
+      << seen.out;
+  const Result r = run("run cube.stl -o cube --no-report --h .1");
+  ASSERT_EQ(r.code, 0) << r.out << r.err;
+  const Json c = certificate_of("cube");
+  EXPECT_EQ(c["features"]["curves"], 16);
+  EXPECT_EQ(c["features"]["missed_curves"], 0);
+  EXPECT_NEAR(c["volume"].get<double>(), 1, 1e-9);
+  const Result exported = run("export cube --format inp");
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  const std::string text = content(folder / "cube/4-export/mesh.inp");
+  EXPECT_NE(text.find("inlet_2"), std::string::npos);
+  EXPECT_NE(text.find("part"), std::string::npos);
+}
+
+TEST_F(EdgedTriangles, GivenLinesReplaceTheEdgesUnlessBothAreAskedFor) {
+  TriangleMesh mesh = test::cube_with_imprint();
+  mesh.labels.clear();
+  write_stl("cube.stl", mesh);
+  std::ofstream(folder / "square.feat") << "feat 1\n5\n.3 .3 1\n.7 .3 1\n.7 .7 1\n.3 .7 1\n.3 .3 1\n";
+  EXPECT_NE(run("inspect cube.stl --features square.feat").out.find("4 sharp edges, 4 corners, 2 patches"),
+            std::string::npos);
+  const std::string call = "run cube.stl -o cube --no-report --h .12 --features square.feat --edges auto";
+  const Result both = run(call);
+  ASSERT_EQ(both.code, 0) << both.out << both.err;
+  EXPECT_NE(both.err.find("16 sharp edges, 12 corners, 7 patches, 4 of the edges from given lines"), std::string::npos)
+      << both.err;
+  EXPECT_EQ(certificate_of("cube")["features"]["missed_curves"], 0);
+  // Another file makes another mesh.
+  EXPECT_NE(run(call).err.find("up to date"), std::string::npos);
+  std::ofstream(folder / "square.feat") << "feat 1\n3\n.3 .3 1\n.7 .3 1\n.7 .7 1\n";
+  const Result again = run(call);
+  EXPECT_NE(again.err.find("14 sharp edges"), std::string::npos) << again.err;
+  // Lines elsewhere are refused before anything is made.
+  std::ofstream(folder / "square.feat") << "feat 1\n2\n.3 .3 1\n.7 .3 1.5\n";
+  const Result refused = run("run cube.stl -o other --features square.feat");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("square.feat: line 4: the point 0.7 0.3 1.5 is 0.5 from the triangles"), std::string::npos)
+      << refused.err;
+  EXPECT_EQ(run("run " + cloud.string() + " -o third --features square.feat").code, 3);
 }
 
 }  // namespace

@@ -128,7 +128,32 @@ TEST(BodySamples, LabelsAreThoseOfTheTriangles) {
   ASSERT_EQ(body.cloud.labels.size(), body.cloud.points.size());
   for (std::size_t i = 0; i < body.cloud.points.size(); ++i)
     EXPECT_EQ(body.cloud.labels[i], body.cloud.normals[i].z() > .5 ? 2 : 1);
-  EXPECT_EQ(body.boundary.labels, std::vector<int>(12, 1));  // all of them
+  for (std::size_t f = 0; f < body.boundary.F.size(); ++f) {
+    EXPECT_FALSE(is_partly_inside(body.boundary.labels[f]));
+    EXPECT_EQ(group_of(body.boundary.labels[f]), body.boundary.centroid(f).z() > .99 ? 2 : 1);
+  }
+}
+
+TEST(BodySamples, TrianglesOnTheBoundaryKeepTheirGroupAndLines) {
+  TriangleMesh two = together(cube(), test::moved(cube(), {.5, .2, .3}));  // overlapping
+  for (std::size_t f = 0; f < two.F.size(); ++f) two.labels.push_back(f < 12 ? 0 : 7);
+  two.lines = {{0, 4}, {8, 12}};
+  const TriangleMesh kept = sample_body(two).boundary;
+  std::size_t n_partly = 0;
+  for (std::size_t f = 0; f < kept.F.size(); ++f) {
+    const bool is_second = kept.centroid(f).x() > 1 || kept.centroid(f).y() > 1 || kept.centroid(f).z() > 1;
+    if (is_second) EXPECT_EQ(group_of(kept.labels[f]), 7);
+    n_partly += is_partly_inside(kept.labels[f]) ? 1 : 0;
+  }
+  EXPECT_GT(n_partly, 0U);
+  ASSERT_EQ(kept.lines.size(), 2U);
+  EXPECT_EQ(kept.V[kept.lines[1][0]], two.V[8]);
+  EXPECT_EQ(kept.V[kept.lines[1][1]], two.V[12]);
+  // Without labels, and with a label for each of many triangles, there are no groups.
+  TriangleMesh many = torus();
+  for (const int label : sample_body(many).boundary.labels) EXPECT_EQ(group_of(label), 0);
+  for (std::size_t f = 0; f < many.F.size(); ++f) many.labels.push_back(static_cast<int>(f) + 1);
+  for (const int label : sample_body(many).boundary.labels) EXPECT_EQ(group_of(label), 0);
 }
 
 TEST(BodySamples, DoNotDependOnTheNumberOfThreads) {

@@ -139,5 +139,37 @@ TEST(SharpEdges, ACurveHasKinksAtAChamferAndNoneOnAnArc) {
   EXPECT_EQ(arc.corners.size(), 6u);
 }
 
+TEST(SharpEdges, BordersOfLabelsAndLinesAreCurvesInAPlane) {
+  TriangleMesh mesh = test::cube_with_imprint();
+  const SharpEdges both = find_sharp_edges(mesh);
+  EXPECT_EQ(both.curves.size(), 16u);
+  EXPECT_EQ(both.n_curves_by(SharpCurve::Reason::Border), 4u);
+  EXPECT_EQ(both.n_curves_by(SharpCurve::Reason::Turn), 12u);
+  EXPECT_EQ(both.n_patches, 7u);
+  EXPECT_EQ(both.corners.size(), 12u);
+  EXPECT_EQ(find_sharp_edges(mesh, {.by_turn = false}).curves.size(), 4u);
+  EXPECT_EQ(find_sharp_edges(mesh, {.by_user = false}).curves.size(), 12u);
+  mesh.labels.clear();
+  EXPECT_EQ(find_sharp_edges(mesh).curves.size(), 12u);
+  mesh.lines = {{8, 9}, {10, 9}};  // an open line, which noise would be
+  const SharpEdges open = find_sharp_edges(mesh);
+  EXPECT_EQ(open.n_curves_by(SharpCurve::Reason::Line), 2u);
+  EXPECT_EQ(open.n_patches, 6u);
+}
+
+TEST(SharpEdges, AStaircaseOfLabelsIsNoCurveAndACircleIsOne) {
+  const auto labelled = [](int n, auto is_inside) {
+    TriangleMesh mesh = sphere(n, n / 2);
+    for (std::size_t f = 0; f < mesh.F.size(); ++f) mesh.labels.push_back(is_inside(mesh.centroid(f)) ? 2 : 1);
+    return mesh;
+  };
+  const auto cap = [](const Vec3& x) { return x.z() > .01; };
+  const auto tilted = [](const Vec3& x) { return x.z() + .7 * x.x() > .013; };
+  EXPECT_EQ(find_sharp_edges(labelled(200, cap)).curves.size(), 1u);
+  EXPECT_TRUE(find_sharp_edges(labelled(200, tilted)).curves.empty());
+  // Of a few large triangles it is a choice of the user.
+  EXPECT_FALSE(find_sharp_edges(labelled(16, tilted)).curves.empty());
+}
+
 }  // namespace
 }  // namespace umtet

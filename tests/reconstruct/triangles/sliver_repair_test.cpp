@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "reconstruct/triangles/sharp_edges.h"
@@ -46,6 +47,26 @@ TEST(SliverRepair, ACapIsFlippedAway) {
   EXPECT_EQ(after.euler_characteristic, before.euler_characteristic);
   EXPECT_NEAR(after.volume, before.volume, 1e-8);
   EXPECT_EQ(find_sharp_edges(mesh).n_patches, 6u);
+}
+
+TEST(SliverRepair, LinesAndLabelsStayWhereTheyAre) {
+  // The cap of an edge of the square: flat, and on the line.
+  for (const double off : {1e-9, -1e-9}) {
+    TriangleMesh mesh = test::cube_with_imprint();
+    const auto at =
+        std::find_if(mesh.F.begin(), mesh.F.end(), [](const Triangle& f) { return f[0] == 8 && f[1] == 9; });
+    std::rotate(mesh.F.begin(), at, mesh.F.end());
+    std::rotate(mesh.labels.begin(), mesh.labels.begin() + (mesh.F.size() - 2), mesh.labels.end());
+    mesh.lines = {{8, 9}, {9, 10}, {10, 11}, {11, 8}};
+    mesh = with_cap(mesh, off);
+    mesh.labels.insert(mesh.labels.end(), {2, 2});
+    EXPECT_EQ(remove_slivers(mesh, 1e-6), 1u);
+    EXPECT_EQ(mesh.lines.size(), 5u);
+    const SharpEdges edges = find_sharp_edges(mesh);
+    EXPECT_EQ(edges.n_curves_by(SharpCurve::Reason::Line), 4u);
+    EXPECT_EQ(edges.n_curves_by(SharpCurve::Reason::Border), 0u);
+    EXPECT_EQ(edges.n_patches, 7u);
+  }
 }
 
 TEST(SliverRepair, ANeedleCollapses) {

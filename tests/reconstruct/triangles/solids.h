@@ -2,6 +2,7 @@
 
 // Closed surfaces of triangles, and what is done to them.
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -50,6 +51,25 @@ inline TriangleMesh open_box(const Vec3& size, double wall) {
     face(4 + k, 4 + next, 8 + next, 8 + k);
     face(8 + k, 8 + next, 12 + next, 12 + k);
   }
+  return mesh;
+}
+
+/// cube() whose side z = 1 has the square [low, high]^2 in it, with two triangles of label 2; all others have label 1.
+/// The corners of the square are the vertices 8 to 11, counter-clockwise.
+inline TriangleMesh cube_with_imprint(double low = .3, double high = .7) {
+  TriangleMesh mesh = cube();
+  mesh.F.resize(mesh.F.size() - 2);
+  for (const auto& [x, y] : {std::pair{low, low}, {high, low}, {high, high}, {low, high}}) mesh.V.emplace_back(x, y, 1);
+  const std::array<int, 4> rim = {1, 5, 7, 3};
+  for (int k = 0; k < 4; ++k) {
+    const int next = (k + 1) % 4;
+    mesh.F.push_back({rim[k], rim[next], 8 + next});
+    mesh.F.push_back({rim[k], 8 + next, 8 + k});
+  }
+  mesh.labels.assign(mesh.F.size(), 1);
+  mesh.F.push_back({8, 9, 10});
+  mesh.F.push_back({8, 10, 11});
+  mesh.labels.insert(mesh.labels.end(), {2, 2});
   return mesh;
 }
 

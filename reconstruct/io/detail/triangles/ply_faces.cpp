@@ -70,6 +70,36 @@ void read_faces(const CloudSource& source, Body& body, const PlyElement& face, P
   }
 }
 
+/// The columns of the ends of an edge, if it has both.
+std::optional<std::array<std::size_t, 2>> edge_ends(const PlyElement& edge) {
+  std::array<std::size_t, 2> at = {edge.properties.size(), edge.properties.size()};
+  for (std::size_t p = 0; p < edge.properties.size(); ++p) {
+    if (edge.properties[p].is_list) continue;
+    if (edge.properties[p].name == "vertex1") at[0] = p;
+    if (edge.properties[p].name == "vertex2") at[1] = p;
+  }
+  if (std::max(at[0], at[1]) == edge.properties.size()) return std::nullopt;
+  return at;
+}
+
+template <class Body>
+void read_edges(const CloudSource& source, Body& body, const PlyElement& edge, PolygonSoup& soup) {
+  const std::optional<std::array<std::size_t, 2>> at = edge_ends(edge);
+  std::vector<double> values(edge.properties.size());
+  for (std::uint64_t item = 0; item < edge.count; ++item) {
+    body.read_item(edge, item, values);
+    if (!at) continue;
+    std::array<int, 2> ends;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double v = values[(*at)[k]];
+      if (v != std::trunc(v) || v < 0 || v > std::numeric_limits<int>::max())
+        refuse(source, fmt::format("{}: {} is no number of a vertex", place_of(edge, item), v));
+      ends[k] = static_cast<int>(v);
+    }
+    soup.lines.push_back(ends);
+  }
+}
+
 template <class Body>
 PolygonSoup read_soup(const CloudSource& source, const PlyHeader& header) {
   PolygonSoup soup;
@@ -82,6 +112,8 @@ PolygonSoup read_soup(const CloudSource& source, const PlyHeader& header) {
       read_vertices(source, body, element, soup);
     } else if (element.name == "face") {
       read_faces(source, body, element, soup);
+    } else if (element.name == kSharpEdges) {
+      read_edges(source, body, element, soup);
     } else {
       values.resize(element.properties.size());
       for (std::uint64_t item = 0; item < element.count; ++item) body.read_item(element, item, values);

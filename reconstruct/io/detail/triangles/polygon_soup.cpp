@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include "reconstruct/io/detail/extent.h"
 
@@ -57,6 +59,21 @@ void name_labels(std::vector<int>& labels, const NameTable& names, TriangleFileR
   if (n < 2 || n > kMostGroups) return labels.clear();
   report.label_names = names.names();
   for (int& label : labels) ++label;
+}
+
+/// Takes the lines that are sides of triangles. @param number  of each vertex of the file, in the mesh; -1: none
+void take_lines(const std::vector<std::array<int, 2>>& lines, const std::vector<int>& number, TriangleFile& file) {
+  if (lines.empty()) return;
+  std::set<std::pair<int, int>> sides;
+  for (const Triangle& f : file.mesh.F)
+    for (int k = 0; k < 3; ++k) sides.insert(std::minmax({f[k], f[(k + 1) % 3]}));
+  const auto n = static_cast<int>(number.size());
+  for (const auto& [a, b] : lines) {
+    const bool is_side = a < n && b < n && sides.contains(std::minmax({number[a], number[b]}));
+    if (is_side) file.mesh.lines.push_back({number[a], number[b]});
+    file.report.n_lines_ignored += is_side ? 0 : 1;
+  }
+  file.report.n_lines = file.mesh.lines.size();
 }
 
 }  // namespace
@@ -136,6 +153,7 @@ TriangleFile triangles_of(const CloudSource& source, PolygonSoup soup, std::stri
   for (Triangle& f : mesh.F)
     for (int& v : f) v = number[v];
   check_extent(source, mesh.V, 4);
+  take_lines(soup.lines, number, file);
   return file;
 }
 

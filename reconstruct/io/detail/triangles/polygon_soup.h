@@ -15,6 +15,9 @@ namespace umtet::detail {
 /// Maximum number of corners. Real polygons have few, and cutting takes time that grows like their square.
 inline constexpr std::size_t kMostCorners = 500;
 
+/// The element of PLY for TriangleMesh::lines. An element of another program, edge, often has all edges of a surface.
+inline constexpr std::string_view kSharpEdges = "sharp_edge";
+
 /// Assigns numbers to names in order of appearance.
 class NameTable {
  public:
@@ -32,6 +35,8 @@ struct PolygonSoup {
   std::vector<std::int64_t> corners;  ///< of all polygons, from 0
   std::vector<std::size_t> ends;      ///< end of each polygon in `corners`
   std::vector<int> labels;            ///< of each polygon; or empty
+  /// Pairs of indices into V. Those that are sides of triangles become lines of the mesh.
+  std::vector<std::array<int, 2>> lines = {};
 
   std::size_t size() const { return ends.size(); }
   std::size_t begin(std::size_t polygon) const { return polygon == 0 ? 0 : ends[polygon - 1]; }
