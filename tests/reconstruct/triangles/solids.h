@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "reconstruct/triangles/face_patches.h"
 #include "reconstruct/triangles/triangle_mesh.h"
@@ -20,6 +21,25 @@ inline TriangleMesh cube() {
            {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
     mesh.F.push_back({a, b, c});
     mesh.F.push_back({a, c, d});
+  }
+  return mesh;
+}
+
+/// A prism over a polygon, from z = 0 to its height, outward. The polygon turns left and is triangulated by a fan from
+/// its first corner: it is convex, or star-shaped around that corner.
+inline TriangleMesh prism(const std::vector<Eigen::Vector2d>& polygon, double height) {
+  TriangleMesh mesh;
+  const int n = static_cast<int>(polygon.size());
+  for (const double z : {0., height})
+    for (const auto& p : polygon) mesh.V.emplace_back(p.x(), p.y(), z);
+  for (int k = 1; k + 1 < n; ++k) {
+    mesh.F.push_back({0, k + 1, k});
+    mesh.F.push_back({n, n + k, n + k + 1});
+  }
+  for (int k = 0; k < n; ++k) {
+    const int next = (k + 1) % n;
+    mesh.F.push_back({k, next, n + next});
+    mesh.F.push_back({k, n + next, n + k});
   }
   return mesh;
 }
