@@ -71,55 +71,6 @@ std::optional<double> h_that_shows(const MeshAttempt& a, double effort) {
   return h ? std::optional(kMargin * *h) : std::nullopt;
 }
 
-/// The edge lengths to try, one after the other.
-class SmallerEdges {
- public:
-  SmallerEdges(const EdgeLength& choice, double effort)
-      : choice_(choice),
-        effort_(effort),
-        left_(asks_for_more(effort) ? kRemadeWithEffort : kRemade),
-        h_(choice.h),
-        unit_(h_) {}
-
-  /// The h to try after this attempt, or none.
-  std::optional<double> next(const MeshAttempt& last) {
-    if (left_-- == 0) return std::nullopt;
-    // Thin parts that noise hides do not show at any h: samples are as far off as they are thick.
-    if (choice_.of_thin_parts && !is_begun_ && asks_for_more(effort_)) {
-      is_begun_ = true;
-      return h_ = unit_ = *choice_.of_thin_parts;
-    }
-    const double nearby = kNearby * h_;
-    if (!was_nearby_ && !is_smaller_ && may_improve_nearby(last, effort_) && nearby >= choice_.least &&
-        may_try(nearby)) {
-      was_nearby_ = true;
-      return nearby;
-    }
-    std::optional<double> smaller = h_that_shows(last, effort_);
-    if (choice_.of_thin_parts && !is_begun_) smaller.reset();
-    if (asks_for_more(effort_)) smaller = std::min(smaller.value_or(kRefinement * h_), kRefinement * h_);
-    if (!smaller) return std::nullopt;
-    *smaller = std::max(*smaller, choice_.least);
-    if (*smaller > kWorthTrying * h_ || !may_try(*smaller)) return std::nullopt;
-    is_smaller_ = true;
-    return h_ = *smaller;
-  }
-
- private:
-  bool may_try(double h) {
-    const double spent = spent_ + std::pow(unit_ / h, 3);
-    if (spent > effort_) return false;
-    spent_ = spent;
-    return true;
-  }
-
-  const EdgeLength& choice_;
-  const double effort_;
-  int left_;
-  double h_, unit_, spent_ = 1;
-  bool is_begun_ = false, was_nearby_ = false, is_smaller_ = false;
-};
-
 bool is_worse(const MeshAttempt& a, const MeshAttempt& b) {
   const auto rank = [](const MeshAttempt& x) { return std::tuple(!x.made(), x.reasons.size(), x.defects.size()); };
   return rank(a) > rank(b);
@@ -145,25 +96,55 @@ std::string MeshAttempt::complaint() const {
   return formatted("it has %zu small defect%s", n, n == 1 ? "" : "s");
 }
 
-MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::function<MeshAttempt(double h)>& attempt,
-                         const std::function<void(const std::string&)>& say) {
-  SmallerEdges smaller(choice, effort);
-  MeshAttempt best = attempt(choice.h);
-  bool keeps_last = true;
-  double h = choice.h;
-  std::string why = best.complaint();
-  std::optional<double> next_h = may_improve(best, effort) ? smaller.next(best) : std::nullopt;
-  while (next_h) {
-    say(formatted("h = %.4g will not do (%s); trying %.4g", h, why.c_str(), *next_h));
-    h = *next_h;
-    MeshAttempt next = attempt(h);
-    next_h = may_improve(next, effort) ? smaller.next(next) : std::nullopt;
-    why = next.complaint();
-    keeps_last = !is_worse(next, best);
-    if (keeps_last) best = std::move(next);
+AttemptsWithOneH::AttemptsWithOneH(const EdgeLength& choice, double effort, std::function<void(const std::string&)> say)
+    : choice_(choice),
+      effort_(effort),
+      say_(std::move(say)),
+      next_h_(choice.h),
+      left_(asks_for_more(effort) ? kRemadeWithEffort : kRemade),
+      h_(choice.h),
+      unit_(choice.h) {}
+
+void AttemptsWithOneH::add(MeshAttempt last) {
+  const double h = *next_h_;
+  next_h_ = may_improve(last, effort_) ? h_after(last) : std::nullopt;
+  const std::string why = last.complaint();
+  const bool keeps_last = !best_ || !is_worse(last, *best_);
+  if (keeps_last) best_ = std::move(last);
+  if (next_h_) {
+    say_(formatted("h = %.4g will not do (%s); trying %.4g", h, why.c_str(), *next_h_));
+  } else if (!keeps_last) {
+    say_(formatted("h = %.4g will not do either (%s); keeping h = %.4g", h, why.c_str(), best_->h));
   }
-  if (!keeps_last) say(formatted("h = %.4g will not do either (%s); keeping h = %.4g", h, why.c_str(), best.h));
-  return best;
+}
+
+std::optional<double> AttemptsWithOneH::h_after(const MeshAttempt& last) {
+  if (left_-- == 0) return std::nullopt;
+  // Thin parts that noise hides do not show at any h: samples are as far off as they are thick.
+  if (choice_.of_thin_parts && !is_begun_ && asks_for_more(effort_)) {
+    is_begun_ = true;
+    return h_ = unit_ = *choice_.of_thin_parts;
+  }
+  const double nearby = kNearby * h_;
+  if (!was_nearby_ && !is_smaller_ && may_improve_nearby(last, effort_) && nearby >= choice_.least && may_try(nearby)) {
+    was_nearby_ = true;
+    return nearby;
+  }
+  std::optional<double> smaller = h_that_shows(last, effort_);
+  if (choice_.of_thin_parts && !is_begun_) smaller.reset();
+  if (asks_for_more(effort_)) smaller = std::min(smaller.value_or(kRefinement * h_), kRefinement * h_);
+  if (!smaller) return std::nullopt;
+  *smaller = std::max(*smaller, choice_.least);
+  if (*smaller > kWorthTrying * h_ || !may_try(*smaller)) return std::nullopt;
+  is_smaller_ = true;
+  return h_ = *smaller;
+}
+
+bool AttemptsWithOneH::may_try(double h) {
+  const double spent = spent_ + std::pow(unit_ / h, 3);
+  if (spent > effort_) return false;
+  spent_ = spent;
+  return true;
 }
 
 MeshAttempt refined_attempt(double h, double effort,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "body/fidelity/mesh_measures.h"
@@ -54,19 +55,49 @@ inline constexpr double kDefaultEffort = 2.5;
 /// is not a part of psi without the support of samples.
 bool may_improve(const MeshAttempt& attempt, double effort);
 
-/// Runs `attempt` at choice.h. If the mesh has a defect that is not small, it runs `attempt` at an h for which it
-/// expects no such defect: at .985 h if the only faults are folded faces and vertices off psi = 0, because these depend
-/// on h irregularly, otherwise at the h that resolves all thin parts at the defects. h is never below choice.least. If
-/// noise determined h, the smaller h for thin parts is tried only with more than the default effort.
+/// The attempts that use one h for the whole mesh:
 ///
-/// @param effort  largest ratio of the tets of all attempts to the tets of the first (or the first for thin parts); an
-///                h beyond it is not tried. The ratio is estimated from h alone, so the result does not depend on the
-///                machine.
-/// @param say     receives the reason for each further attempt, and the choice of the mesh if it is not the last
-/// @return the best attempt: one with a mesh; among these, one with the fewest reasons for failure, then the fewest
-///         defects, then the last
-MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::function<MeshAttempt(double h)>& attempt,
-                         const std::function<void(const std::string&)>& say);
+///     AttemptsWithOneH attempts(choice, effort, say);
+///     while (const std::optional<double> h = attempts.next_h()) attempts.add(attempt_at(*h));
+///     return attempts.take_best();
+///
+/// The first h is choice.h. If the mesh has a defect that is not small, the next h is one for which no such defect is
+/// expected: .985 h if the only faults are folded faces and vertices off psi = 0, because these depend on h
+/// irregularly, otherwise the h that resolves all thin parts at the defects. h is never below choice.least. If noise
+/// determined h, the smaller h for thin parts is tried only with more than the default effort.
+class AttemptsWithOneH {
+ public:
+  /// @param effort  largest ratio of the tets of all attempts to the tets of the first (or the first for thin parts);
+  ///                an h beyond it is not tried. The ratio is estimated from h alone, so the result does not depend on
+  ///                the machine.
+  /// @param say     receives the reason for each further attempt, and the choice of the mesh if it is not the last
+  AttemptsWithOneH(const EdgeLength& choice, double effort, std::function<void(const std::string&)> say);
+
+  /// Returns the h of the next attempt; empty if there is none.
+  std::optional<double> next_h() const { return next_h_; }
+
+  /// Receives the attempt at next_h(), which must not be empty, and chooses the h after it.
+  void add(MeshAttempt attempt);
+
+  /// Returns the best attempt: one with a mesh; among these, one with the fewest reasons for failure, then the fewest
+  /// defects, then the last. \pre add() has been called
+  MeshAttempt take_best() { return std::move(*best_); }
+
+ private:
+  std::optional<double> h_after(const MeshAttempt& last);
+  bool may_try(double h);
+
+  const EdgeLength choice_;
+  const double effort_;
+  const std::function<void(const std::string&)> say_;
+  std::optional<double> next_h_;
+  std::optional<MeshAttempt> best_;
+  int left_;               ///< number of attempts that may follow
+  double h_, unit_;        ///< h of the last attempt that was not only nearby; the h whose tets are the unit
+  double spent_ = 1;       ///< tets of all attempts, estimated, in tets at unit_
+  bool is_begun_ = false;  ///< the h of thin parts has been tried
+  bool was_nearby_ = false, is_smaller_ = false;
+};
 
 /// Runs `attempt` at h. While the mesh has a defect that is not small, it runs `attempt` again with smaller edges at
 /// the defects, at most four times.
@@ -77,7 +108,7 @@ MeshAttempt best_attempt(const EdgeLength& choice, double effort, const std::fun
 ///                no edge may be smaller
 /// @param effort  no further attempt is made if all attempts together have more than this many times the tets of the
 ///                first
-/// @return the best attempt, as best_attempt()
+/// @return the best attempt, as AttemptsWithOneH::take_best()
 MeshAttempt refined_attempt(double h, double effort,
                             const std::function<MeshAttempt(double h, const MeshAttempt* former)>& attempt,
                             const std::function<std::optional<double>(const MeshAttempt&)>& refine,

@@ -276,8 +276,8 @@ MeshAttempt MeshMaker::finish(const SizedBackground& background, Begun begun) {
   return a;
 }
 
-MeshAttempt MeshMaker::attempt(const SizedBackground& background, double h, const MeshAttempt* former) {
-  return finish(background, choose(background, h, former));
+MeshAttempt MeshMaker::attempt(const SizedBackground& background, double h) {
+  return finish(background, choose(background, h, nullptr));
 }
 
 void MeshMaker::curve(MeshAttempt& a) const {
@@ -300,7 +300,10 @@ void MeshMaker::curve(MeshAttempt& a) const {
 /// at one h gives the next, before anything is moved. Few tets jump with h, to either side of the number asked for.
 MeshAttempt MeshMaker::attempt_for_tets(double h, const MakeBackground& make, const MeshAttempt* former) {
   const auto asked = static_cast<double>(options_.mesh.tets);
-  if (asked == 0) return attempt(make(h), h, former);
+  if (asked == 0) {
+    const SizedBackground made = make(h);
+    return finish(made, choose(made, h, former));
+  }
   double nearest = h, least_miss = std::numeric_limits<double>::infinity();
   std::optional<double> makes_more, makes_less;
   for (int n_misses = 0;;) {
@@ -333,21 +336,26 @@ MeshAttempt MeshMaker::graded(BackgroundChoice& backgrounds, double h, const Mak
 }
 
 MeshAttempt MeshMaker::best(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make) {
-  MeshAttempt best = search(backgrounds, choice, make);
   const MeshOptions& p = options_.mesh;
+  MeshAttempt best;
+  if (backgrounds.is_graded()) {
+    best = graded(backgrounds, choice.h, make);
+  } else {
+    AttemptsWithOneH attempts(choice, p.effort, [this](const std::string& line) { say(line); });
+    while (const std::optional<double> h = attempts.next_h()) attempts.add(attempt_for_tets(*h, make));
+    best = or_graded(attempts.take_best(), backgrounds, choice.h, make);
+  }
   best.measured.search = {n_attempts_, p.h > 0 || p.tets > 0, choice.at_max_tets};
   return best;
 }
 
-MeshAttempt MeshMaker::search(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make) {
-  if (backgrounds.is_graded()) return graded(backgrounds, choice.h, make);
+/// The best attempt with one h, or one with sizes that vary, if that is better.
+MeshAttempt MeshMaker::or_graded(MeshAttempt of_one_h, BackgroundChoice& backgrounds, double first_h,
+                                 const MakeBackground& make) {
   const double effort = options_.mesh.effort;
-  MeshAttempt of_one_h = best_attempt(
-      choice, effort, [&](double h) { return attempt_for_tets(h, make); },
-      [this](const std::string& line) { say(line); });
   const bool may_be_remade = !domain_.piecewise && (n_attempts_ == 1 || effort > kDefaultEffort);
   if (of_one_h.is_right() || !may_be_remade || !may_improve(of_one_h, effort)) return of_one_h;
-  const double allowed = (effort - n_attempts_) * backgrounds.expected_tets(domain_, choice.h);
+  const double allowed = (effort - n_attempts_) * backgrounds.expected_tets(domain_, first_h);
   try {
     const std::optional<EdgeLength> sizes = backgrounds.grade(domain_, context_);
     if (sizes && backgrounds.expected_tets(domain_, sizes->h) <= allowed) {

@@ -41,13 +41,13 @@ class MeshMaker {
   /// Meshes psi with the detail for h in this background. It also returns a mesh whose certificate fails, and an
   /// attempt without a mesh.
   /// \throw MeshingImpossible  no sample is near psi = 0; Cancelled
-  MeshAttempt attempt(const SizedBackground& background, double h) { return attempt(background, h, nullptr); }
+  MeshAttempt attempt(const SizedBackground& background, double h);
 
-  /// Returns best_attempt() from choice.h on, with a new background for each attempt, or refined_attempt() if sizes
-  /// vary. If the library chooses between one h and varying sizes, and the best attempt with one h is not good, it also
-  /// tries varying sizes, provided that may_improve() and that these make no more than mesh.effort times as many tets.
-  /// If the number of tets differs from mesh.tets by more than a tenth, which is known before vertices move, another h
-  /// is used.
+  /// Returns the best of AttemptsWithOneH from choice.h on, with a new background for each attempt, or
+  /// refined_attempt() if sizes vary. If the library chooses between one h and varying sizes, and the best attempt with
+  /// one h is not good, it also tries varying sizes, provided that may_improve() and that these make no more than
+  /// mesh.effort times as many tets. If the number of tets differs from mesh.tets by more than a tenth, which is known
+  /// before vertices move, another h is used.
   /// @param choice  edge length that `backgrounds` chose
   /// @param make    calls backgrounds.make(), and does all other work before an attempt
   MeshAttempt best(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make);
@@ -80,9 +80,9 @@ class MeshMaker {
   const TriangleThickness* thin_triangles(const BackgroundMesh& background, const ZeroSetChoice& pieces, double h);
   KnownSigns known_signs(const BackgroundMesh& background, const ZeroSetChoice& pieces) const;
   bool may_keep(const MeshAttempt& former, const ZeroSetChoice& pieces) const;
-  MeshAttempt attempt(const SizedBackground& background, double h, const MeshAttempt* former);
   MeshAttempt attempt_for_tets(double h, const MakeBackground& make, const MeshAttempt* former = nullptr);
-  MeshAttempt search(BackgroundChoice& backgrounds, const EdgeLength& choice, const MakeBackground& make);
+  MeshAttempt or_graded(MeshAttempt of_one_h, BackgroundChoice& backgrounds, double first_h,
+                        const MakeBackground& make);
   MeshAttempt graded(BackgroundChoice& backgrounds, double h, const MakeBackground& make);
   void curve(MeshAttempt& a) const;
   void say(const Message& line) const {

@@ -23,32 +23,14 @@ namespace {
 using testing::Placement;
 using testing::random_placement;
 
-/// A prism over a polygon, triangulated by a fan from its first corner: convex, or star-shaped around that corner.
-TriangleMesh prism(const std::vector<Eigen::Vector2d>& polygon, double height) {
-  TriangleMesh mesh;
-  const int n = static_cast<int>(polygon.size());
-  for (const double z : {0., height})
-    for (const auto& p : polygon) mesh.V.emplace_back(p.x(), p.y(), z);
-  for (int k = 1; k + 1 < n; ++k) {
-    mesh.F.push_back({0, k + 1, k});
-    mesh.F.push_back({n, n + k, n + k + 1});
-  }
-  for (int k = 0; k < n; ++k) {
-    const int next = (k + 1) % n;
-    mesh.F.push_back({k, next, n + next});
-    mesh.F.push_back({k, n + next, n + k});
-  }
-  return mesh;
-}
-
 TriangleMesh cylinder(int n) {
   std::vector<Eigen::Vector2d> circle;
   for (int k = 0; k < n; ++k) circle.emplace_back(std::cos(2 * M_PI * k / n), std::sin(2 * M_PI * k / n));
-  return prism(circle, 1.5);
+  return test::prism(circle, 1.5);
 }
 
 /// With a concave edge: an L. The fan from the inner corner stays inside.
-TriangleMesh ell() { return prism({{1, 1}, {1, 2}, {0, 2}, {0, 0}, {2, 0}, {2, 1}}, 1); }
+TriangleMesh ell() { return test::prism({{1, 1}, {1, 2}, {0, 2}, {0, 0}, {2, 0}, {2, 1}}, 1); }
 
 TriangleMesh placed(TriangleMesh mesh, const Placement& at) {
   for (Vec3& x : mesh.V) x = at.rotation * x + at.offset;
@@ -200,7 +182,7 @@ TEST(TriangleDomain, AnOpenSurfaceIsNone) {
 
 TEST(FeatureSizes, FollowThicknessAndCurves) {
   // A plate of .05.
-  TriangleMesh plate = prism({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, .05);
+  TriangleMesh plate = test::prism({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, .05);
   const SharpEdges edges = find_sharp_edges(plate);
   const auto body = triangle_domain(plate, edges);
   ASSERT_TRUE(body);

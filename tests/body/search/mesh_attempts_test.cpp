@@ -72,13 +72,14 @@ MeshAttempt ended_as(int outcome) {
 /// What is kept when the k-th attempt ends as outcomes[k]: a number of reasons, or one of those above.
 struct Story {
   explicit Story(const std::vector<int>& outcomes, double effort = kDefaultEffort, EdgeLength choice = {1, 0}) {
-    const auto attempt = [&](double h) {
+    AttemptsWithOneH attempts(choice, effort, [&](const std::string& line) { said.push_back(line); });
+    while (const std::optional<double> h = attempts.next_h()) {
       MeshAttempt a = ended_as(outcomes.at(tried.size()));
-      a.h = h;
-      tried.push_back(h);
-      return a;
-    };
-    kept = best_attempt(choice, effort, attempt, [&](const std::string& line) { said.push_back(line); });
+      a.h = *h;
+      tried.push_back(*h);
+      attempts.add(std::move(a));
+    }
+    kept = attempts.take_best();
   }
   std::vector<double> tried;
   std::vector<std::string> said;
@@ -87,14 +88,14 @@ struct Story {
 
 using H = std::vector<double>;
 
-TEST(BestAttempt, SmallDefectsAreNamedAndNotChased) {
+TEST(AttemptsWithOneH, SmallDefectsAreNamedAndNotChased) {
   for (const int outcome : {0, kSmallFold, kSmallCut}) {
     EXPECT_EQ(Story({outcome}).tried, H{1});
     EXPECT_TRUE(Story({outcome}).said.empty());
   }
 }
 
-TEST(BestAttempt, AWholeMeshIsMadeAgainOnceAndOnlyWhereItIsForecastToPass) {
+TEST(AttemptsWithOneH, AWholeMeshIsMadeAgainOnceAndOnlyWhereItIsForecastToPass) {
   EXPECT_EQ(Story({kFold, kFold}).tried, (H{1, .985})) << "folds come and go with h";
   EXPECT_EQ(Story({kThin, kThin}).tried, (H{1, .9})) << "the h that shows it";
   EXPECT_EQ(Story({kVeryThin}).tried, H{1}) << "1 + 1 / .6^3 is more than the effort";
@@ -103,13 +104,13 @@ TEST(BestAttempt, AWholeMeshIsMadeAgainOnceAndOnlyWhereItIsForecastToPass) {
   EXPECT_EQ(Story({kInverted}).tried, H{1}) << "nothing thin explains it";
 }
 
-TEST(BestAttempt, WhatPsiInventsIsNotMeshedAgain) {
+TEST(AttemptsWithOneH, WhatPsiInventsIsNotMeshedAgain) {
   EXPECT_EQ(Story({kGuessed}).tried, H{1});
   EXPECT_EQ(Story({kGuessedHandle}).tried, H{1});
   EXPECT_EQ(Story({kGuessed, 0}, 8).tried.size(), 2U) << "unless the user spends more";
 }
 
-TEST(BestAttempt, TheBetterMeshIsKept) {
+TEST(AttemptsWithOneH, TheBetterMeshIsKept) {
   EXPECT_EQ(Story({kFold, 0}).kept.h, .985);
   EXPECT_EQ(Story({kFold, kSmallFold}).kept.h, .985);
   const Story s({kFold, kInverted});
@@ -117,20 +118,20 @@ TEST(BestAttempt, TheBetterMeshIsKept) {
   EXPECT_NE(s.said.back().find("keeping h = 1"), std::string::npos) << s.said.back();
 }
 
-TEST(BestAttempt, WhatNoiseHidesIsTriedWithMoreEffortOnly) {
+TEST(AttemptsWithOneH, WhatNoiseHidesIsTriedWithMoreEffortOnly) {
   const EdgeLength of_noise = {.h = 1, .least = 0, .of_thin_parts = .5};
   EXPECT_EQ(Story({kThin}, kDefaultEffort, of_noise).tried, H{1});
   EXPECT_EQ(Story({kFold, 0}, kDefaultEffort, of_noise).tried, (H{1, .985}));
   EXPECT_EQ(Story({kThin, 0}, 8, of_noise).tried, (H{1, .5}));
 }
 
-TEST(BestAttempt, NeverGoesBelowTheLeastH) {
+TEST(AttemptsWithOneH, NeverGoesBelowTheLeastH) {
   EXPECT_EQ(Story({kInverted}, kAnyEffort, {1, 1}).tried, H{1}) << "a given h is its own least";
   EXPECT_EQ(Story({kFold}, kDefaultEffort, {1, .99}).tried, H{1});
   EXPECT_EQ(Story({1, 1, 1, 1}, kAnyEffort, {1, .7}).tried, (H{1, .985, .8, .7}));
 }
 
-TEST(BestAttempt, MoreEffortChasesSmallFoldsAndTriesMore) {
+TEST(AttemptsWithOneH, MoreEffortChasesSmallFoldsAndTriesMore) {
   EXPECT_EQ(Story({kSmallFold, 0}, 8).tried, (H{1, .985}));
   EXPECT_EQ(Story({kSmallCut}, 8).tried, H{1}) << "no h is known to do without";
   EXPECT_EQ(Story({1, 1, 1, 1}, 8).tried, (H{1, .985, .8, .8 * .8}));
@@ -138,7 +139,7 @@ TEST(BestAttempt, MoreEffortChasesSmallFoldsAndTriesMore) {
   EXPECT_EQ(Story({kThin, kThin, 0}, 8).tried.size(), 3u);
 }
 
-TEST(BestAttempt, EndsWhereTheEffortIsSpent) {
+TEST(AttemptsWithOneH, EndsWhereTheEffortIsSpent) {
   // 1, 1/.985^3 = 1.05, 1/.8^3 = 1.95, 3.8, 7.5
   EXPECT_EQ(Story({1}, 1.5).tried.size(), 1u);
   EXPECT_EQ(Story({1, 1, 1}, 5).tried.size(), 3u);

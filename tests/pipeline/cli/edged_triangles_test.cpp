@@ -1,8 +1,5 @@
 // The program on triangles with sharp edges: a function for every smooth patch, and every edge in the mesh.
 
-#include <array>
-#include <vector>
-
 #include "reconstruct/triangles/triangle_mesh.h"
 #include "tests/pipeline/cli/program_fixture.h"
 #include "tests/reconstruct/triangles/solids.h"
@@ -108,23 +105,7 @@ TEST_F(EdgedTriangles, SmoothTrianglesHaveNoFeatures) {
 }
 
 /// A block with a groove of 8 degrees, in which there is no room for tets.
-TriangleMesh grooved_block() {
-  const std::vector<std::array<double, 2>> outline = {{.5, .3}, {.45, 1}, {0, 1}, {0, 0}, {1, 0}, {1, 1}, {.55, 1}};
-  const int n = static_cast<int>(outline.size());
-  TriangleMesh mesh;
-  for (const double z : {0., 1.})
-    for (const auto& p : outline) mesh.V.emplace_back(p[0], p[1], z);
-  for (int k = 1; k + 1 < n; ++k) {
-    mesh.F.push_back({0, k + 1, k});
-    mesh.F.push_back({n, n + k, n + k + 1});
-  }
-  for (int k = 0; k < n; ++k) {
-    const int next = (k + 1) % n;
-    mesh.F.push_back({k, next, n + next});
-    mesh.F.push_back({k, n + next, n + k});
-  }
-  return mesh;
-}
+TriangleMesh grooved_block() { return test::prism({{.5, .3}, {.45, 1}, {0, 1}, {0, 0}, {1, 0}, {1, 1}, {.55, 1}}, 1); }
 
 TEST_F(EdgedTriangles, AMeshWithEdgesThatFailsIsMadeAgainWithoutThem) {
   write_stl("block.stl", grooved_block());

@@ -111,31 +111,15 @@ TEST(SharpEdges, SpecksAreNoise) {
   EXPECT_TRUE(find_sharp_edges(mesh).curves.empty());
 }
 
-// The outline of a box with a chamfer along y: its curves turn by 45 degrees twice, between longer edges.
+// The outline of a box with a chamfer along z: its curves turn by 45 degrees twice, between longer edges.
 TEST(SharpEdges, ACurveHasKinksAtAChamferAndNoneOnAnArc) {
-  const auto prism = [](const std::vector<Eigen::Vector2d>& outline) {
-    TriangleMesh mesh;
-    const int n = static_cast<int>(outline.size());
-    for (const double y : {0., 1.})
-      for (const auto& p : outline) mesh.V.emplace_back(p.x(), y, p.y());
-    for (int k = 1; k + 1 < n; ++k) {
-      mesh.F.push_back({0, k, k + 1});
-      mesh.F.push_back({n, n + k + 1, n + k});
-    }
-    for (int k = 0; k < n; ++k) {
-      const int next = (k + 1) % n;
-      mesh.F.push_back({k, n + next, next});
-      mesh.F.push_back({k, n + k, n + next});
-    }
-    return mesh;
-  };
-  const SharpEdges chamfer = find_sharp_edges(prism({{0, 0}, {2, 0}, {2, .7}, {1.5, 1.2}, {0, 1.2}}));
+  const SharpEdges chamfer = find_sharp_edges(test::prism({{0, 0}, {2, 0}, {2, .7}, {1.5, 1.2}, {0, 1.2}}, 1));
   EXPECT_EQ(chamfer.corners.size(), 10u);
   // A quarter of a circle of eight chords is no kink.
   std::vector<Eigen::Vector2d> round = {{0, 0}, {2, 0}};
   for (int k = 0; k <= 8; ++k) round.emplace_back(1 + std::cos(k * M_PI / 16), .2 + std::sin(k * M_PI / 16));
   round.emplace_back(0, 1.2);
-  const SharpEdges arc = find_sharp_edges(prism(round));
+  const SharpEdges arc = find_sharp_edges(test::prism(round, 1));
   EXPECT_EQ(arc.corners.size(), 6u);
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "reconstruct/triangles/face_patches.h"
 #include "reconstruct/triangles/triangle_mesh.h"
@@ -50,6 +51,25 @@ inline TriangleMesh open_box(const Vec3& size, double wall) {
     face(k, next, 4 + next, 4 + k);
     face(4 + k, 4 + next, 8 + next, 8 + k);
     face(8 + k, 8 + next, 12 + next, 12 + k);
+  }
+  return mesh;
+}
+
+/// A prism over a polygon, from z = 0 to its height, outward. The polygon turns left and is triangulated by a fan from
+/// its first corner: it is convex, or star-shaped around that corner.
+inline TriangleMesh prism(const std::vector<Eigen::Vector2d>& polygon, double height) {
+  TriangleMesh mesh;
+  const int n = static_cast<int>(polygon.size());
+  for (const double z : {0., height})
+    for (const auto& p : polygon) mesh.V.emplace_back(p.x(), p.y(), z);
+  for (int k = 1; k + 1 < n; ++k) {
+    mesh.F.push_back({0, k + 1, k});
+    mesh.F.push_back({n, n + k, n + k + 1});
+  }
+  for (int k = 0; k < n; ++k) {
+    const int next = (k + 1) % n;
+    mesh.F.push_back({k, next, n + next});
+    mesh.F.push_back({k, n + next, n + k});
   }
   return mesh;
 }
