@@ -84,10 +84,10 @@ class Mergers {
 }  // namespace
 
 bool merge_smooth_borders(const PatchCloud& cloud, std::vector<int>& labels) {
+  Mergers mergers(static_cast<std::size_t>(renumber(labels)));
   const std::vector<BorderSite> sites = border_sites(cloud, labels);
   std::vector<double> turns(sites.size());
   tbb::parallel_for(std::size_t{0}, sites.size(), [&](std::size_t k) { turns[k] = turn_at(cloud, labels, sites[k]); });
-  Mergers mergers(static_cast<std::size_t>(renumber(labels)));
   std::vector<PairTurn> smooth;
   const std::vector<std::size_t> starts = pair_starts(sites);
   for (std::size_t p = 0; p + 1 < starts.size(); ++p) {
