@@ -28,6 +28,8 @@ Border border_of(std::span<const BorderSite> sites, std::span<const SiteEvidence
           yes > 0 && 2 * yes >= sites.size()};
 }
 
+/// Borders of patches that touch. Samples of two sheets that pass each other closely are neighbours, but none of them
+/// is beside both sheets.
 std::vector<Border> borders_of(const PatchCloud& cloud, const std::vector<int>& labels, const EdgeThresholds& enough) {
   const std::vector<BorderSite> sites = border_sites(cloud, labels);
   const std::vector<SiteEvidence> evidence = evidence_at(cloud, labels, sites);
@@ -36,8 +38,12 @@ std::vector<Border> borders_of(const PatchCloud& cloud, const std::vector<int>& 
   std::vector<Border> borders;
   for (std::size_t p = 0; p + 1 < starts.size(); ++p) {
     const std::size_t first = starts[p], count = starts[p + 1] - first;
-    borders.push_back(border_of(std::span(sites).subspan(first, count), std::span(evidence).subspan(first, count),
-                                std::span(accepted).subspan(first, count)));
+    const auto here = std::span<const SiteEvidence>(evidence).subspan(first, count);
+    const auto known = static_cast<std::size_t>(
+        std::count_if(here.begin(), here.end(), [](const SiteEvidence& e) { return e.count > 0; }));
+    if (2 * known < count) continue;
+    borders.push_back(
+        border_of(std::span(sites).subspan(first, count), here, std::span(accepted).subspan(first, count)));
   }
   return borders;
 }

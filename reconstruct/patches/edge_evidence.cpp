@@ -56,9 +56,11 @@ double residual2(const PatchCloud& cloud, const LocalSheet& sheet, std::size_t k
   return std::min(kMostResidual2, (d * d + a * a) / 3);
 }
 
-/// Mean of residual2() of samples away from borders, from the sheets of their own patches.
-double usual_residual2(const PatchCloud& cloud, const std::vector<int>& labels) {
-  constexpr std::size_t kSampled = 2000, kAround = 12;
+/// The mean square residual of each patch, away from its borders, from its own sheets. Patches with few such samples
+/// have nearly the mean of all.
+std::vector<double> usual_residuals2(const PatchCloud& cloud, const std::vector<int>& labels) {
+  constexpr std::size_t kSampled = 20000, kAround = 12;
+  constexpr double kPrior = 6;  // samples: a mean over fewer is as uncertain as patches differ
   const std::size_t stride = 1 + cloud.size() / kSampled;
   std::vector<double> found((cloud.size() + stride - 1) / stride, -1);
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
@@ -67,18 +69,28 @@ double usual_residual2(const PatchCloud& cloud, const std::vector<int>& labels) 
       if (labels[j] != labels[i]) return;
     if (const auto sheet = sheet_near(cloud, labels, labels[i], i)) found[k] = residual2(cloud, *sheet, i);
   });
-  double sum = 0, count = 0;
-  for (const double r2 : found) {
-    if (r2 < 0) continue;
-    sum += r2;
-    ++count;
+  const auto n_patches = static_cast<std::size_t>(1 + *std::max_element(labels.begin(), labels.end()));
+  std::vector<double> usual(n_patches), count(n_patches);
+  double sum = 0, n = 0;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (found[k] < 0) continue;
+    const auto label = static_cast<std::size_t>(labels[k * stride]);
+    usual[label] += found[k];
+    ++count[label];
+    sum += found[k];
+    ++n;
   }
-  return std::max(kLeastUsual, count > 0 ? sum / count : 1);
+  const double all = n > 0 ? sum / n : 1;
+  for (std::size_t label = 0; label < n_patches; ++label)
+    usual[label] = std::max(kLeastUsual, (usual[label] + kPrior * all) / (count[label] + kPrior));
+  return usual;
 }
 
 /// Evidence of one site: sums over its samples, in place of means.
-SiteEvidence sums_at(const PatchCloud& cloud, const std::vector<int>& labels, const BorderSite& site) {
+SiteEvidence sums_at(const PatchCloud& cloud, const std::vector<int>& labels, const std::vector<double>& usual,
+                     const BorderSite& site) {
   SiteEvidence found;
+  const double usual_a = usual[static_cast<std::size_t>(site.a)], usual_b = usual[static_cast<std::size_t>(site.b)];
   const auto a = sheet_near(cloud, labels, site.a, site.i);
   const auto b = sheet_near(cloud, labels, site.b, site.i);
   if (!a || !b) return found;
@@ -96,8 +108,8 @@ SiteEvidence sums_at(const PatchCloud& cloud, const std::vector<int>& labels, co
   for (const std::uint32_t k : std::span(both).first(n)) {
     const Vec3& y = cloud.points[k];
     if ((y - x).norm() > kBall || std::max(std::abs(a->distance(y)), std::abs(b->distance(y))) > width) continue;
-    found.two += std::min(residual2(cloud, *a, k), residual2(cloud, *b, k));
-    found.one += residual2(cloud, whole, k);
+    found.two += std::min(residual2(cloud, *a, k) / usual_a, residual2(cloud, *b, k) / usual_b);
+    found.one += residual2(cloud, whole, k) / std::max(usual_a, usual_b);
     ++found.count;
   }
   found.angle = angle * found.count;
@@ -132,8 +144,9 @@ std::vector<SiteEvidence> evidence_at(const PatchCloud& cloud, const std::vector
                                       const std::vector<BorderSite>& sites) {
   std::vector<SiteEvidence> single(sites.size()), result(sites.size());
   if (sites.empty()) return result;
-  tbb::parallel_for(std::size_t{0}, sites.size(), [&](std::size_t k) { single[k] = sums_at(cloud, labels, sites[k]); });
-  const double usual = usual_residual2(cloud, labels);
+  const std::vector<double> usual = usual_residuals2(cloud, labels);
+  tbb::parallel_for(std::size_t{0}, sites.size(),
+                    [&](std::size_t k) { single[k] = sums_at(cloud, labels, usual, sites[k]); });
   const SitesInSpace in_space(cloud, sites);
   tbb::parallel_for(std::size_t{0}, sites.size(), [&](std::size_t k) {
     SiteEvidence& mean = result[k];
@@ -146,8 +159,8 @@ std::vector<SiteEvidence> evidence_at(const PatchCloud& cloud, const std::vector
     }
     if (mean.count == 0) return;
     mean.angle /= mean.count;
-    mean.two /= mean.count * usual;
-    mean.one /= mean.count * usual;
+    mean.two /= mean.count;
+    mean.one /= mean.count;
   });
   return result;
 }
@@ -157,7 +170,9 @@ std::vector<char> accepted_sites(const PatchCloud& cloud, const std::vector<Bord
   std::vector<char> accepted(sites.size());
   for (std::size_t k = 0; k < sites.size(); ++k) {
     const SiteEvidence& e = evidence[k];
-    accepted[k] = e.count > 0 && e.angle > enough.angle && e.two < enough.two && e.one > enough.gain * e.two;
+    accepted[k] = e.count > 0 && e.angle > enough.angle &&
+                  ((e.two < enough.two && e.one > enough.gain * e.two) ||
+                   (e.two < enough.clear_two && e.one > enough.clear_gain * e.two));
   }
   const std::vector<std::size_t> size = network_sizes(cloud, sites, accepted, kTogether);
   for (std::size_t k = 0; k < sites.size(); ++k)

@@ -18,7 +18,7 @@ PatchMisfit patch_misfit(const PatchCloud& cloud, const std::vector<int>& labels
 /// What the samples at a border site say about an edge, averaged along the border.
 ///
 /// Residuals are those of positions, in units of the noise, and of measured normals, in units of their tilt. Their mean
-/// squares are relative to the mean square of samples away from borders.
+/// squares are relative to those of the same patches away from their borders.
 struct SiteEvidence {
   double angle = 0;  ///< between the sheets of both patches, radians
   double two = 0;    ///< mean square residual of samples beside the edge from the nearer one of two sheets
@@ -34,10 +34,11 @@ std::vector<SiteEvidence> evidence_at(const PatchCloud& cloud, const std::vector
 
 /// What evidence is enough for an edge.
 struct EdgeThresholds {
-  double angle;   ///< least angle, radians
-  double two;     ///< largest SiteEvidence::two
-  double gain;    ///< least one / two
-  double length;  ///< least length of a network of edges, in sample spacings
+  double angle;                  ///< least angle, radians
+  double two;                    ///< largest SiteEvidence::two
+  double gain;                   ///< least one / two
+  double clear_two, clear_gain;  ///< the same for edges that are clear by a large gain
+  double length;                 ///< least length of a network of edges, in sample spacings
 };
 
 /// Which sites belong to edges: those with enough evidence, in networks that are long enough.

@@ -16,6 +16,11 @@ namespace {
 constexpr std::size_t kAround = 12;   ///< a neighbourhood: two rings of samples
 constexpr double kLeastScale = .26;   ///< radians (15 degrees): curvature of radius 5 spacings within 1.3 spacings
 constexpr double kLargestScale = .7;  ///< radians (40 degrees): less than half a right angle
+/// A farther neighbourhood is chosen only if it is better by this factor: curved surfaces are not followed to their
+/// flattest place.
+constexpr double kClearlyLess = .7;
+constexpr double kTrust = 3;         ///< deviations by which a sample's normal may differ from its guide
+constexpr double kLeastTrust = .35;  ///< radians (20 degrees): the turn of a radius of 5 spacings within two
 constexpr int kPasses = 3;
 constexpr double kLeastVariance = 1e-5;  ///< of positions from a plane, squared spacings: smaller ones are all alike
 
@@ -50,12 +55,32 @@ std::vector<std::uint32_t> most_consistent(const std::vector<double>& cost, cons
   std::vector<std::uint32_t> chosen(cost.size());
   tbb::parallel_for(std::size_t{0}, cost.size(), [&](std::size_t i) {
     auto best = static_cast<std::uint32_t>(i);
-    // A farther neighbourhood must be clearly better: curved surfaces are not followed to their flattest place.
     for (const std::uint32_t j : around(near, i))
-      if (cost[j] < .7 * cost[best]) best = j;
+      if (cost[j] < kClearlyLess * cost[best]) best = j;
     chosen[i] = best;
   });
   return chosen;
+}
+
+/// First guides of the filter: the mean normal of the most consistent neighbourhood among those that agree with the
+/// sample's own normal up to an angle. Without any it is this normal, as on faces that are narrower than
+/// neighbourhoods.
+std::vector<Vec3> guides(const std::vector<Vec3>& normals, const std::vector<Vec3>& means,
+                         const std::vector<double>& cost, const Neighbourhoods& near, double angle) {
+  std::vector<Vec3> result(normals);
+  tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) {
+    double least = std::numeric_limits<double>::infinity();
+    const auto consider = [&](std::size_t j) {
+      if (!(cost[j] < kClearlyLess * least)) return;
+      const Vec3 mean = unit_or(means[j], normals[i]);
+      if (angle_between(mean, normals[i]) > angle) return;
+      least = cost[j];
+      result[i] = mean;
+    };
+    consider(i);
+    for (const std::uint32_t j : around(near, i)) consider(j);
+  });
+  return result;
 }
 
 /// One pass: means of normals around, weighted by their distance and by their angle with the guide.
@@ -93,7 +118,7 @@ FilteredNormals filter_normals(const std::vector<Vec3>& points, const std::vecto
   double tilt = std::sqrt(median(least));
   FilteredNormals result;
   result.normals.resize(n);
-  for (std::size_t i = 0; i < n; ++i) result.normals[i] = unit_or(means[chosen[i]], normals[i]);
+  result.normals = guides(normals, means, cost, near, std::max(kLeastTrust, kTrust * tilt));
   for (int pass = 0; pass < kPasses; ++pass) {
     const double scale = std::clamp(2.5 * tilt, kLeastScale, kLargestScale);
     result.normals = weighted_means(points, normals, result.normals, near, scale);

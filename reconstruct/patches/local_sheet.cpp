@@ -32,7 +32,8 @@ LocalSheet::LocalSheet(const SheetSamples& samples, const Vec3& origin, const Ve
   const std::size_t n = std::min(members.size(), kMostMembers);
   for (std::size_t k = 0; k < n; ++k) sizes[k] = std::abs(distance(samples.points[members[k]]));
   std::nth_element(sizes.begin(), sizes.begin() + n / 2, sizes.begin() + n);
-  fit(samples, members.first(n), kOutlying * std::max(samples.noise, 1.5 * sizes[n / 2]));
+  residual_ = sizes[n / 2];
+  fit(samples, members.first(n), kOutlying * std::max(samples.noise, 1.5 * residual_));
 }
 
 void LocalSheet::fit(const SheetSamples& samples, std::span<const std::uint32_t> members, double outlying) {

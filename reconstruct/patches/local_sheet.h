@@ -35,11 +35,14 @@ class LocalSheet {
   double distance(const Vec3& x) const;
   /// Unit normal of the sheet below or above x.
   Vec3 normal(const Vec3& x) const;
+  /// Median distance of the members from the first fit.
+  double residual() const { return residual_; }
 
  private:
   void fit(const SheetSamples& samples, std::span<const std::uint32_t> members, double outlying);
 
   Vec3 origin_, u_, v_, w_;
+  double residual_ = 0;
   Eigen::Matrix<double, 6, 1> c_;
 };
 

@@ -8,7 +8,9 @@
 namespace umtet {
 namespace {
 
-constexpr std::size_t kMembers = 20;  ///< samples of a sheet: three times the coefficients of a quadric
+constexpr std::size_t kMembers = 20;     ///< samples of a sheet: three times the coefficients of a quadric
+constexpr std::size_t kFewMembers = 11;  ///< where a quadric misfits more of them: surfaces that curve strongly
+constexpr double kMisfit = 1.5;          ///< median residual in units of the noise; noise alone leaves .67
 constexpr std::size_t kFewestMembers = 5;
 constexpr std::size_t kTouching = 12;   ///< neighbours among which a sample touches another patch: two rings
 constexpr double kTouchingReach = 2.5;  ///< spacings: beyond the second ring
@@ -49,7 +51,12 @@ std::optional<LocalSheet> sheet_near(const PatchCloud& cloud, const std::vector<
                                   [&](std::uint32_t j) { return cloud.normals[j].dot(up) < 0; });
   n = static_cast<std::size_t>(end - members.begin());
   if (n < kFewestMembers || !(up.norm() > 1e-9)) return std::nullopt;
-  return LocalSheet(cloud.samples(), cloud.points[i], up.normalized(), std::span(members).first(n));
+  const auto all = std::span<const std::uint32_t>(members).first(n);
+  const LocalSheet sheet(cloud.samples(), cloud.points[i], up.normalized(), all);
+  if (n <= kFewMembers || sheet.residual() < kMisfit * cloud.noise) return sheet;
+  Vec3 nearer = Vec3::Zero();
+  for (const std::uint32_t j : all.first(kFewMembers)) nearer += cloud.normals[j];
+  return LocalSheet(cloud.samples(), cloud.points[i], nearer.normalized(), all.first(kFewMembers));
 }
 
 std::vector<BorderSite> border_sites(const PatchCloud& cloud, const std::vector<int>& labels) {

@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <set>
 
@@ -16,13 +17,18 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSmooth = 25 * kDegree;  ///< mean turn of a border that is no edge
 constexpr double kSharp = 30 * kDegree;   ///< turn of a stretch that is one
 constexpr std::size_t kStretch = 6;       ///< sites of such a stretch
+constexpr double kStep = .5;              ///< spacings between sheets that do not continue each other, ...
+constexpr double kStepDeviations = 3;     ///< ... or deviations of positions: two sheets are off by less than one
 constexpr double kTogether = 2.5;         ///< spacings between two sites of a stretch: beyond the second ring
 
-/// The angle between the sheets of both patches at a site; -1 if one of them is too small to have a sheet.
+/// The angle between the sheets of both patches at a site, pi if they pass each other like the sides of a step, and -1
+/// if one of them is too small to have a sheet.
 double turn_at(const PatchCloud& cloud, const std::vector<int>& labels, const BorderSite& site) {
   const auto a = sheet_near(cloud, labels, site.a, site.i), b = sheet_near(cloud, labels, site.b, site.i);
   if (!a || !b) return -1;
   const Vec3 x = cloud.middle(site);
+  if (std::abs(a->distance(x) - b->distance(x)) > std::max(kStep, kStepDeviations * cloud.noise))
+    return std::numbers::pi;
   return angle_between(a->normal(x), b->normal(x));
 }
 

@@ -15,7 +15,7 @@ constexpr std::size_t kAround = 24;     ///< a sample with another label among s
 constexpr std::size_t kNeighbours = 8;  ///< of the Potts term
 constexpr double kPotts = .5;           ///< per neighbour of another patch
 constexpr double kMost = 50;            ///< of each residual squared: seven deviations are an outlier of any patch
-constexpr double kMostFiltered = 4;     ///< for normals that are estimated from the same positions
+constexpr double kMostFiltered = 1;     ///< for normals that are estimated from the same positions
 /// Standard deviation of a filtered normal that is compared with a sheet's: what curvature and filter leave, radians.
 constexpr double kFiltered = 8 * std::numbers::pi / 180;
 

@@ -32,6 +32,7 @@ constexpr double kMostPositionNoise = .3;
 // Fillets with a radius of one spacing have `two` of 1.7 and more at a noise of .13 spacings, and a gain of less
 // than 2.3 at .26; edges of the parts of the tests have 1.44 and less, and 2.3 and more at these levels.
 constexpr double kMostTwo = 1.6;
+constexpr double kClearTwo = 2.5, kClearGain = 3.5, kClearGainOfPositions = 6;
 constexpr double kPartGain = 2, kPartLength = 8;
 constexpr double kOrganicGain = 3, kOrganicLength = 12;
 
@@ -98,7 +99,11 @@ SamplePatches segment_cloud(const std::vector<Vec3>& points, const std::vector<V
   if (!params.measured_normals && (!is_part || misfit.noise > kMostPositionNoise)) {
     std::fill(labels.begin(), labels.end(), 0);
   } else {
-    const EdgeThresholds enough = {params.least_angle * kDegree, kMostTwo, is_part ? kPartGain : kOrganicGain,
+    const EdgeThresholds enough = {params.least_angle * kDegree,
+                                   kMostTwo,
+                                   is_part ? kPartGain : kOrganicGain,
+                                   kClearTwo,
+                                   is_part && params.measured_normals ? kClearGain : kClearGainOfPositions,
                                    is_part ? kPartLength : kOrganicLength};
     result.borders = accept_edges(cloud, labels, enough);
     for (SamplePatches::Border& border : result.borders) border.length *= spacing;
