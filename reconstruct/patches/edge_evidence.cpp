@@ -9,6 +9,7 @@
 
 #include "common/disjoint_sets.h"
 #include "reconstruct/cloud/neighbours/local_quadric.h"
+#include "reconstruct/patches/measures.h"
 
 namespace umtet {
 namespace {
@@ -28,12 +29,6 @@ constexpr double kTogether = 2.5;      ///< spacings between two sites of one ne
 /// at the holes of the bracket of the tests, with a radius of four spacings, they are larger than elsewhere.
 constexpr double kLeastUsual = .5;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Variance of the nearest samples of a patch around sample i from a quadric; -1 if there are fewer than `count`.
 double variance_around(const PatchCloud& cloud, const std::vector<int>& labels, std::size_t i, std::size_t count) {
   std::array<Neighbour, kMany> members;
@@ -49,11 +44,21 @@ double variance_around(const PatchCloud& cloud, const std::vector<int>& labels, 
 }
 
 /// Squared residual of sample k from a sheet, the mean over its components, in standard deviations.
-double residual2(const PatchCloud& cloud, const LocalSheet& sheet, std::size_t k) {
-  const double d = sheet.distance(cloud.points[k]) / cloud.noise;
+double residual2(const PatchCloud& cloud, const LocalSheet& sheet, const Vec3& x, const Vec3& normal) {
+  const double d = sheet.distance(x) / cloud.noise;
   if (!cloud.has_measured_normals()) return std::min(kMostResidual2, d * d);
-  const double a = (sheet.normal(cloud.points[k]) - cloud.measured[k]).norm() / cloud.tilt;
+  const double a = (sheet.normal(x) - normal).norm() / cloud.tilt;
   return std::min(kMostResidual2, (d * d + a * a) / 3);
+}
+
+double residual2(const PatchCloud& cloud, const LocalSheet& sheet, std::size_t k) {
+  return residual2(cloud, sheet, cloud.points[k], cloud.measured[k]);
+}
+
+/// What residual2() from `whole` would be if the sample were exactly on one of its own sheets.
+double ideal_residual2(const PatchCloud& cloud, const LocalSheet& own, const LocalSheet& whole, std::size_t k) {
+  const Vec3 normal = own.normal(cloud.points[k]);
+  return residual2(cloud, whole, cloud.points[k] - own.distance(cloud.points[k]) * normal, normal);
 }
 
 /// The mean square residual of each patch, away from its borders, from its own sheets. Patches with few such samples
@@ -108,8 +113,11 @@ SiteEvidence sums_at(const PatchCloud& cloud, const std::vector<int>& labels, co
   for (const std::uint32_t k : std::span(both).first(n)) {
     const Vec3& y = cloud.points[k];
     if ((y - x).norm() > kBall || std::max(std::abs(a->distance(y)), std::abs(b->distance(y))) > width) continue;
-    found.two += std::min(residual2(cloud, *a, k) / usual_a, residual2(cloud, *b, k) / usual_b);
-    found.one += residual2(cloud, whole, k) / std::max(usual_a, usual_b);
+    const double from_a = residual2(cloud, *a, k) / usual_a, from_b = residual2(cloud, *b, k) / usual_b;
+    const double usual_of_both = std::max(usual_a, usual_b);
+    found.two += std::min(from_a, from_b);
+    found.one += residual2(cloud, whole, k) / usual_of_both;
+    found.ideal += ideal_residual2(cloud, from_a < from_b ? *a : *b, whole, k) / usual_of_both;
     ++found.count;
   }
   found.angle = angle * found.count;
@@ -155,12 +163,14 @@ std::vector<SiteEvidence> evidence_at(const PatchCloud& cloud, const std::vector
       mean.angle += single[l].angle;
       mean.two += single[l].two;
       mean.one += single[l].one;
+      mean.ideal += single[l].ideal;
       mean.count += single[l].count;
     }
     if (mean.count == 0) return;
     mean.angle /= mean.count;
     mean.two /= mean.count;
     mean.one /= mean.count;
+    mean.ideal /= mean.count;
   });
   return result;
 }
@@ -170,9 +180,8 @@ std::vector<char> accepted_sites(const PatchCloud& cloud, const std::vector<Bord
   std::vector<char> accepted(sites.size());
   for (std::size_t k = 0; k < sites.size(); ++k) {
     const SiteEvidence& e = evidence[k];
-    accepted[k] = e.count > 0 && e.angle > enough.angle &&
-                  ((e.two < enough.two && e.one > enough.gain * e.two) ||
-                   (e.two < enough.clear_two && e.one > enough.clear_gain * e.two));
+    accepted[k] = e.count > 0 && e.angle > enough.angle && e.two < enough.two && e.one > enough.gain * e.two &&
+                  e.one - e.two > enough.share * e.ideal;
   }
   const std::vector<std::size_t> size = network_sizes(cloud, sites, accepted, kTogether);
   for (std::size_t k = 0; k < sites.size(); ++k)

@@ -23,22 +23,24 @@ struct SiteEvidence {
   double angle = 0;  ///< between the sheets of both patches, radians
   double two = 0;    ///< mean square residual of samples beside the edge from the nearer one of two sheets
   double one = 0;    ///< the same from a single sheet through both patches
+  double ideal = 0;  ///< the part of `one` that an edge between both sheets would cause
   double count = 0;  ///< samples that were compared; 0: nothing is known
 };
 
-/// Evidence of each site, averaged over the sites of the same two patches within three spacings. A fillet shows in
-/// `two`: its samples are beside both sheets. A smooth surface shows in `one`.
+/// Evidence of each site, averaged over the sites of the same two patches within three spacings. An edge between both
+/// sheets has a `two` of 1, and `one` is `two` + `ideal`. The samples of a fillet are off both sheets and nearer to the
+/// single one: (one - two) / ideal is smaller, at any noise.
 /// @param sites  border_sites()
 std::vector<SiteEvidence> evidence_at(const PatchCloud& cloud, const std::vector<int>& labels,
                                       const std::vector<BorderSite>& sites);
 
 /// What evidence is enough for an edge.
 struct EdgeThresholds {
-  double angle;                  ///< least angle, radians
-  double two;                    ///< largest SiteEvidence::two
-  double gain;                   ///< least one / two
-  double clear_two, clear_gain;  ///< the same for edges that are clear by a large gain
-  double length;                 ///< least length of a network of edges, in sample spacings
+  double angle;   ///< least angle, radians
+  double share;   ///< least (one - two) / ideal
+  double two;     ///< largest two
+  double gain;    ///< least one / two
+  double length;  ///< least length of a network of edges, in sample spacings
 };
 
 /// Which sites belong to edges: those with enough evidence, in networks that are long enough.

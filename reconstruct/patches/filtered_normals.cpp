@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "reconstruct/patches/local_sheet.h"
+#include "reconstruct/patches/measures.h"
 
 namespace umtet {
 namespace {
@@ -21,16 +22,9 @@ constexpr double kLargestScale = .7;  ///< radians (40 degrees): less than half 
 constexpr double kClearlyLess = .7;
 constexpr double kTrust = 3;         ///< deviations by which a sample's normal may differ from its guide
 constexpr double kLeastTrust = .35;  ///< radians (20 degrees): the turn of a radius of 5 spacings within two
+constexpr double kFirstScale = 2.5, kNextScale = 1.2;  ///< of angles that count as one deviation, in units of the tilt
 constexpr int kPasses = 3;
 constexpr double kLeastVariance = 1e-5;  ///< of positions from a plane, squared spacings: smaller ones are all alike
-
-double angle_between(const Vec3& a, const Vec3& b) { return 2 * std::asin(std::min(1.0, .5 * (a - b).norm())); }
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Vec3 unit_or(const Vec3& sum, const Vec3& otherwise) {
   const double length = sum.norm();
@@ -83,15 +77,17 @@ std::vector<Vec3> guides(const std::vector<Vec3>& normals, const std::vector<Vec
   return result;
 }
 
-/// One pass: means of normals around, weighted by their distance and by their angle with the guide.
+/// One pass: means of normals around, weighted by their distance and by the angle of the normals
+/// that are compared with the guide.
 std::vector<Vec3> weighted_means(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
-                                 const std::vector<Vec3>& guides, const Neighbourhoods& near, double scale) {
+                                 const std::vector<Vec3>& compared, const std::vector<Vec3>& guides,
+                                 const Neighbourhoods& near, double scale) {
   constexpr double kReach = 1.5;  // spacings: the standard deviation of the weights by distance
   std::vector<Vec3> result(normals.size());
   tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) {
     const auto weight = [&](std::size_t j) {
       const double d2 = (points[j] - points[i]).squaredNorm() / (kReach * kReach);
-      const double a = angle_between(normals[j], guides[i]) / scale;
+      const double a = angle_between(compared[j], guides[i]) / scale;
       return std::exp(-.5 * (d2 + a * a));
     };
     Vec3 sum = weight(i) * normals[i];
@@ -120,8 +116,11 @@ FilteredNormals filter_normals(const std::vector<Vec3>& points, const std::vecto
   result.normals.resize(n);
   result.normals = guides(normals, means, cost, near, std::max(kLeastTrust, kTrust * tilt));
   for (int pass = 0; pass < kPasses; ++pass) {
-    const double scale = std::clamp(2.5 * tilt, kLeastScale, kLargestScale);
-    result.normals = weighted_means(points, normals, result.normals, near, scale);
+    // In the first pass a measured normal is compared with the guide, then its filtered normal, which has less noise.
+    const double scale = pass == 0 ? kFirstScale : kNextScale;
+    const std::vector<Vec3>& compared = pass == 0 ? normals : result.normals;
+    result.normals = weighted_means(points, normals, compared, result.normals, near,
+                                    std::clamp(scale * tilt, kLeastScale, kLargestScale));
     std::vector<double> angles(n);
     for (std::size_t i = 0; i < n; ++i) angles[i] = angle_between(normals[i], result.normals[i]);
     tilt = median(std::move(angles)) / 1.177;  // the median of the length of two normal deviates
@@ -170,7 +169,7 @@ FilteredNormals estimate_edged_normals(const std::vector<Vec3>& points, const st
     result.normals[i] = sheet.normal(points[i]);
   });
   const std::vector<Vec3> once = result.normals;
-  result.normals = weighted_means(points, once, once, near, kLeastScale);
+  result.normals = weighted_means(points, once, once, once, near, kLeastScale);
   return result;
 }
 

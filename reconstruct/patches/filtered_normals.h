@@ -13,8 +13,8 @@ struct FilteredNormals {
 };
 
 /// Filters measured normals: a joint bilateral filter. Its guide at a sample is the mean normal of the most consistent
-/// neighbourhood that contains the sample, which lies on one side of an edge. Then the filter repeats with the result
-/// as guide.
+/// neighbourhood that contains the sample, which lies on one side of an edge; but only if it agrees with the sample's
+/// own normal. Then the filter repeats with the result as guide.
 /// @param points   in sample spacings
 /// @param normals  unit, outward
 /// @param near     at least 16 neighbours of each point, nearest first

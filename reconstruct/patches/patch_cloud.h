@@ -14,9 +14,6 @@
 
 namespace umtet {
 
-/// The angle between two unit vectors, radians; accurate near 0, too.
-inline double angle_between(const Vec3& a, const Vec3& b) { return 2 * std::asin(std::min(1.0, .5 * (a - b).norm())); }
-
 /// Two samples that are neighbours on different patches: sample i of patch a, and sample j of patch b.
 struct BorderSite {
   std::uint32_t i, j;
@@ -50,7 +47,8 @@ struct PatchCloud {
 /// Does a sample belong to the samples to which a sheet near it is fitted?
 enum class Itself { Included, LeftOut };
 
-/// The sheet of a patch near a sample, through the nearest samples on the patch.
+/// The sheet of a patch near a sample, through the nearest 20 samples on the patch, or fewer if the patch curves too
+/// strongly for a quadric through them.
 /// @return none if fewer than five of the neighbours are on the patch
 std::optional<LocalSheet> sheet_near(const PatchCloud& cloud, const std::vector<int>& labels, int label, std::size_t i,
                                      Itself itself = Itself::Included);

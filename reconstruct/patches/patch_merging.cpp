@@ -8,6 +8,7 @@
 #include <set>
 
 #include "common/disjoint_sets.h"
+#include "reconstruct/patches/measures.h"
 #include "reconstruct/patches/patch_growing.h"
 
 namespace umtet {

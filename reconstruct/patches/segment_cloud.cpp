@@ -29,12 +29,14 @@ constexpr double kPart = 1.15;
 /// Spacings: beyond it, positions do not distinguish an edge from a fillet with a radius of one spacing, whose middle
 /// is .4 spacings from the edge.
 constexpr double kMostPositionNoise = .3;
-// Fillets with a radius of one spacing have `two` of 1.7 and more at a noise of .13 spacings, and a gain of less
-// than 2.3 at .26; edges of the parts of the tests have 1.44 and less, and 2.3 and more at these levels.
-constexpr double kMostTwo = 1.6;
-constexpr double kClearTwo = 2.5, kClearGain = 3.5, kClearGainOfPositions = 6;
-constexpr double kPartGain = 2, kPartLength = 8;
-constexpr double kOrganicGain = 3, kOrganicLength = 12;
+
+/// Of parts with measured normals. Fillets with a radius of one spacing have a share of .64 and less at any noise,
+/// edges of the parts of the tests one of .7 and more.
+constexpr EdgeThresholds kPartEdges = {0, .67, 3, 1.3, 8};
+/// Of parts with estimated normals: the same fillets have shares of up to .82, and `two` of 1.6 and more.
+constexpr EdgeThresholds kPositionEdges = {0, .55, 1.7, 2, 8};
+/// Of organic shapes with measured normals.
+constexpr EdgeThresholds kOrganicEdges = {0, .7, 1.6, 3, 12};
 
 PatchCloud scaled_cloud(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double spacing,
                         bool measured) {
@@ -99,12 +101,8 @@ SamplePatches segment_cloud(const std::vector<Vec3>& points, const std::vector<V
   if (!params.measured_normals && (!is_part || misfit.noise > kMostPositionNoise)) {
     std::fill(labels.begin(), labels.end(), 0);
   } else {
-    const EdgeThresholds enough = {params.least_angle * kDegree,
-                                   kMostTwo,
-                                   is_part ? kPartGain : kOrganicGain,
-                                   kClearTwo,
-                                   is_part && params.measured_normals ? kClearGain : kClearGainOfPositions,
-                                   is_part ? kPartLength : kOrganicLength};
+    EdgeThresholds enough = !is_part ? kOrganicEdges : params.measured_normals ? kPartEdges : kPositionEdges;
+    enough.angle = params.least_angle * kDegree;
     result.borders = accept_edges(cloud, labels, enough);
     for (SamplePatches::Border& border : result.borders) border.length *= spacing;
   }
