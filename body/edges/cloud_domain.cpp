@@ -6,7 +6,10 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "common/disjoint_sets.h"
 #include "reconstruct/cloud/neighbours/neighbour_tree.h"
@@ -99,6 +102,10 @@ class CloudSurface {
       if (!(std::abs(psi(x, patches.patch[i], 0).value) <= kOnBoundary * s_)) continue;
       feet.push_back(x);
       patch_.push_back(patches.patch[i]);
+    }
+    if (feet.empty()) {  // curves that contradict all samples
+      feet = points;
+      patch_ = patches.patch;
     }
     tree_.emplace(feet);
   }
