@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "body/edges/edged_body.h"
+#include "body/edges/edged_cloud.h"
 #include "body/errors.h"
 #include "body/fidelity/closed_holes.h"
 #include "body/given_triangles.h"
@@ -208,6 +209,32 @@ bool may_keep_edges(const Options& options) {
          mesh.order == 1 && mesh.mode == UmMode::Fast && !mesh.box_walls && !has_own_background(options.body);
 }
 
+/// The mesh of a body with sharp edges; none if it is not right: then one smooth level set may do.
+std::optional<Mesh> right_mesh(Domain domain, const Options& options) {
+  try {
+    Mesh mesh = mesh_of(std::move(domain), options);
+    const Verdict& v = mesh.verdict;
+    if (v.passes() || (v.is_valid && v.fits_psi && v.fits_input)) return mesh;
+  } catch (const MeshingImpossible&) {
+  } catch (const ResourceLimit&) {
+  }
+  return std::nullopt;
+}
+
+/// The mesh with the sharp edges of a cloud; none if there are no such edges, or if it is not right.
+std::optional<Mesh> mesh_with_edges(const PreparedCloud& prepared, const Options& options) {
+  if (!may_keep_edges(options) || options.body.fit.edges != SharpEdgeUse::Auto) return std::nullopt;
+  const EdgedCloud edged = edged_cloud(prepared.cloud, prepared.near, prepared.report.normals.given,
+                                       {.cancelled = options.context.cancelled});
+  if (!edged.body) return std::nullopt;
+  Domain domain = edged_domain(edged, prepared.cloud, options.box, options.body.mesh.h);
+  LevelSetReport report;
+  report.fit.n_points = prepared.cloud.points.size();
+  domain.facts = input_facts(prepared.report, report);
+  domain.notices = prepared.report.notices;
+  return right_mesh(std::move(domain), options);
+}
+
 /// The mesh with the sharp edges of the triangles; none if there are no such edges, or if it is not right.
 std::optional<Mesh> mesh_with_edges(const SampledTriangles& triangles, const Options& options) {
   if (!may_keep_edges(options)) return std::nullopt;
@@ -222,14 +249,7 @@ std::optional<Mesh> mesh_with_edges(const SampledTriangles& triangles, const Opt
   domain.cloud_spacing = report.fit.cloud_spacing = triangles.report.spacing;
   domain.facts = input_facts(triangles.samples.report, report);
   domain.notices = triangles.samples.report.notices;
-  try {
-    Mesh mesh = mesh_of(std::move(domain), options);
-    const Verdict& v = mesh.verdict;
-    if (v.passes() || (v.is_valid && v.fits_psi && v.fits_input)) return mesh;
-  } catch (const MeshingImpossible&) {  // one smooth level set may do
-  } catch (const ResourceLimit&) {
-  }
-  return std::nullopt;
+  return right_mesh(std::move(domain), options);
 }
 
 }  // namespace
@@ -252,7 +272,9 @@ Mesh mesh_body(const FittedBody& body, const Options& options) {
 }
 
 Mesh mesh_body(OrientedPointCloud cloud, const Options& options) {
-  return mesh_body(fit_body(std::move(cloud), options), options);
+  PreparedCloud prepared = prepare(given_cloud(std::move(cloud)), "points", options);
+  if (std::optional<Mesh> mesh = mesh_with_edges(prepared, options)) return std::move(*mesh);
+  return mesh_body(fit(std::move(prepared), nullptr, options), options);
 }
 
 Mesh mesh_body(TriangleMesh triangles, const Options& options) {

@@ -8,7 +8,7 @@
 namespace umtet {
 namespace {
 
-// Shares of the diagonal and of h: the background needs two edges or more around the body.
+// Shares of the diagonal and of h.
 constexpr double kMargin = .1, kEdgesAround = 5;
 
 Box box_of(const TriangleMesh& mesh) {
@@ -49,14 +49,18 @@ Domain edged_domain(std::shared_ptr<const GivenTriangles> triangles, std::shared
   domain.shift = shift;
   const Box of_body = box_of(triangles->mesh);
   domain.diagonal = of_body.diagonal().norm();
-  const Vec3 margin = Vec3::Constant(std::max(kMargin * domain.diagonal, kEdgesAround * h));
-  domain.box = box ? Box(box->min() - shift, box->max() - shift) : Box(of_body.min() - margin, of_body.max() + margin);
+  domain.box = box ? Box(box->min() - shift, box->max() - shift) : with_margin(of_body, h);
   domain.cloud = std::move(cloud);
   for (Vec3& x : domain.cloud.points) x -= shift;
   domain.triangles = std::move(triangles);
   domain.noise = 0;
   set_body(domain, std::move(body));
   return domain;
+}
+
+Box with_margin(const Box& of_body, double h) {
+  const Vec3 margin = Vec3::Constant(std::max(kMargin * of_body.diagonal().norm(), kEdgesAround * h));
+  return {of_body.min() - margin, of_body.max() + margin};
 }
 
 Vec3 middle_of(const TriangleMesh& mesh) { return box_of(mesh).center(); }

@@ -18,11 +18,14 @@ std::shared_ptr<const PiecewiseBody> edged_body(const GivenTriangles& triangles)
 /// @param body   edged_body() of the triangles
 /// @param cloud  samples of the triangles, model coordinates
 /// @param shift  origin of the working coordinates, model coordinates
-/// @param box    the box to be meshed, model coordinates; empty: the box of the triangles with a margin of a tenth of
-///               its diagonal, or of five edges of length h
+/// @param box    the box to be meshed, model coordinates; empty: with_margin() of the box of the triangles
 /// @param h      edge length, if it is given, or 0
 Domain edged_domain(std::shared_ptr<const GivenTriangles> triangles, std::shared_ptr<const PiecewiseBody> body,
                     OrientedPointCloud cloud, const Vec3& shift, const std::optional<Box>& box, double h);
+
+/// The box of a body with a margin of a tenth of its diagonal, or of five edges of length h: the background needs two
+/// edges or more around the body.
+Box with_margin(const Box& of_body, double h);
 
 /// The origin of the working coordinates: the middle of the box of the triangles.
 Vec3 middle_of(const TriangleMesh& mesh);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "body/edges/edged_body.h"
+#include "pipeline/reports/stage_reports.h"
 
 namespace umtet {
 
@@ -12,6 +14,13 @@ void take_given_edges(Parameters& parameters) {
   const char* key = keys::reconstruct::edges;
   if (parameters.cloud().features.empty() || parameters.source(key) > ParamSource::Case) return;
   parameters.set(key, "given", ParamSource::Derived, "for --features");
+}
+
+EdgedCloud edged_cloud(const OrientedPointCloud& cloud, NeighbourDistances near, const CasePaths& paths,
+                       const Context& context) {
+  const StageState state = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+  const bool has_measured_normals = state.record && cloud_report(*state.record).normals.given;
+  return edged_cloud(cloud, std::move(near), has_measured_normals, context);
 }
 
 std::string edges_text(const SharpEdges& edges) {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "body/body.h"
+#include "body/edges/edged_cloud.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/domain/edged_case.h"
 #include "reconstruct/cloud/neighbours/cloud_neighbours.h"
@@ -23,6 +24,7 @@ struct Handover {
   NeighbourDistances near;                        ///< distances for the points of the cloud, or empty
   std::optional<LevelSet> psi;                    ///< level_set.vti
   EdgedTriangles edged;                           ///< in the place of psi, if the sharp edges of triangles are kept
+  std::optional<EdgedCloud> edged_cloud;          ///< in the place of psi, if the sharp edges of a cloud are kept
   std::optional<Domain> domain;                   ///< the meshed domain, with psi cut for h
   MeshFile mesh;                                  ///< mesh.vtu; set together with the domain
   std::shared_ptr<const MeshWithBoundary> parts;  ///< a distributed mesh, in place of domain and mesh

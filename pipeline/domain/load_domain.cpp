@@ -4,11 +4,13 @@
 #include <utility>
 
 #include "body/edges/edged_body.h"
+#include "body/edges/edged_cloud.h"
 #include "body/given_triangles.h"
 #include "body/option_names.h"
 #include "body/piecewise_body.h"
 #include "body/scan/fitted_domain.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/interrupt.h"
 #include "pipeline/domain/handover.h"
 #include "pipeline/reports/stage_reports.h"
 #include "reconstruct/io/level_set_io.h"
@@ -55,6 +57,16 @@ Domain domain_with_edges(const CasePaths& paths, const Parameters& parameters, c
   return domain;
 }
 
+/// A cloud with sharp edges: a function for each smooth patch.
+Domain cloud_with_edges(const CasePaths& paths, const Parameters& parameters, Handover* handover) {
+  OrientedPointCloud cloud = handover && handover->cloud ? std::move(*std::exchange(handover->cloud, std::nullopt))
+                                                         : read_point_cloud(paths.cloud()).cloud;
+  const EdgedCloud edged = handover && handover->edged_cloud ? *std::exchange(handover->edged_cloud, std::nullopt)
+                                                             : edged_cloud(cloud, {}, paths, until_interrupted());
+  if (!edged.body) throw ArtefactDamaged(paths.cloud().string() + ": has no sharp edges");
+  return edged_domain(edged, std::move(cloud), parse_box(parameters.mesh().box), parameters.mesh().h);
+}
+
 }  // namespace
 
 Domain formula_domain(const Parameters& parameters, std::optional<double> t) {
@@ -77,8 +89,10 @@ Domain load_domain(const CasePaths& paths, const Parameters& parameters, Handove
   try {
     if (has_edges(*state.record)) {
       const LevelSetReport report = level_set_report(*state.record);
-      domain = domain_with_edges(paths, parameters, report, handover);
       const StageState cloud = inspect_stage(paths, Stage::Cloud, Json::object(), std::nullopt);
+      domain = cloud.record && is_of_triangles(paths, *cloud.record)
+                   ? domain_with_edges(paths, parameters, report, handover)
+                   : cloud_with_edges(paths, parameters, handover);
       if (cloud.record) domain.facts = input_facts(cloud_report(*cloud.record), report);
       domain.complement = parameters.mesh().complement;
       return domain;

@@ -1,11 +1,17 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "body/edges/edged_body.h"
+#include "body/edges/edged_cloud.h"
 #include "body/scan/level_set_fit.h"
+#include "mesh/io/tet_mesh_io.h"
+#include "pipeline/case/artefact.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/option_words.h"
@@ -69,8 +75,34 @@ LevelSetReport write_edges(const StageContext& context, const EdgedTriangles& ed
   return report;
 }
 
+/// Returns a cloud with sharp edges and its patches; without a body if there is nothing to keep.
+EdgedCloud edges_to_keep(const StageContext& context, const OrientedPointCloud& cloud, const Context& call) {
+  if (context.parameters.reconstruct().edges != SharpEdgeUse::Auto || exact_samples(context.paths)) return {};
+  return edged_cloud(cloud, context.handover.near, context.paths, call);
+}
+
+/// Writes the curves where patches meet, and the patch of each sample.
+LevelSetReport write_edges(const StageContext& context, const EdgedCloud& edged, const OrientedPointCloud& cloud) {
+  LevelSetReport report;
+  PiecewiseMesh curves;
+  curves.graph = *edged.body->graph;
+  curves.chains.resize(curves.graph.curves.size());
+  report.shift = edged.shift;
+  report.fit.n_points = cloud.points.size();
+  report.fit.cloud_spacing = edged.patches.spacing;
+  report.noise = edged.patches.noise;
+  const fs::path folder = context.paths.folder(Stage::LevelSet);
+  write_features(folder / kFeatureFile, curves, edged.shift);
+  std::vector<std::int64_t> patch;
+  for (const int p : edged.patches.patch) patch.push_back(p + 1);
+  write_artefact(folder / kPatchFile, [&](const fs::path& temporary) {
+    write_vtp(temporary, cloud.points, {{"patch", patch}});
+  });
+  return report;
+}
+
 void write_record_of(const StageContext& context, const std::vector<RecordedFile>& inputs, const LevelSetReport& report,
-                     std::chrono::steady_clock::time_point start, const char* file) {
+                     std::chrono::steady_clock::time_point start, const std::vector<std::string>& files) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   write_record(context.paths,
                {Stage::LevelSet,
@@ -79,7 +111,7 @@ void write_record_of(const StageContext& context, const std::vector<RecordedFile
                 {},
                 to_json(report, wanted_mesh(context.parameters)),
                 run_of_stage(seconds.count(), context.threads)},
-               {file});
+               files);
 }
 
 }  // namespace
@@ -91,7 +123,7 @@ void run_level_set_stage(const StageContext& context) {
     context.progress.say("level-set: " + edges_text(edged.triangles->edges) +
                          ": each patch has a function of its own (--edges off makes one smooth level set)");
     begin_writing(context, Stage::LevelSet);
-    write_record_of(context, inputs, write_edges(context, edged), start, kFeatureFile);
+    write_record_of(context, inputs, write_edges(context, edged), start, {kFeatureFile});
     context.handover.edged = std::move(edged);
     return;
   }
@@ -99,6 +131,18 @@ void run_level_set_stage(const StageContext& context) {
   const Context call{
       .progress = [&](const char* step, double part) { context.progress.report("level-set", step, part); },
       .cancelled = until_interrupted().cancelled};
+  if (EdgedCloud edged = edges_to_keep(context, cloud, call); edged.body) {
+    const FeatureGraph& graph = *edged.body->graph;
+    context.progress.say(
+        fmt::format("level-set: {} sharp edges, {} corners, {} patches: each patch has a function of its "
+                    "own (--edges off makes one smooth level set)",
+                    graph.curves.size(), graph.corners.size(), edged.patches.count));
+    begin_writing(context, Stage::LevelSet);
+    write_record_of(context, inputs, write_edges(context, edged, cloud), start, {kFeatureFile, kPatchFile});
+    context.handover.cloud = std::move(cloud);
+    context.handover.edged_cloud = std::move(edged);
+    return;
+  }
   LevelSetFit fit = [&] {
     try {
       return fit_level_set(cloud, std::exchange(context.handover.near, {}), body_options(context.parameters), call,
@@ -113,7 +157,7 @@ void run_level_set_stage(const StageContext& context) {
   begin_writing(context, Stage::LevelSet);
   write_artefact(context.paths.level_set(),
                  [&](const fs::path& temporary) { write_level_set(temporary, fit.psi, fit.report.shift); });
-  write_record_of(context, inputs, fit.report, start, "level_set.vti");
+  write_record_of(context, inputs, fit.report, start, {"level_set.vti"});
   context.handover.cloud = std::move(cloud);
   context.handover.psi = std::move(fit.psi);
 }
