@@ -55,11 +55,13 @@ TEST(FeatureTracing, FindsEveryCurveAndCornerOfParts) {
       double true_length = 0;
       for (const FeatureCurve& c : cloud.truth.curves) true_length += c.length();
       EXPECT_NEAR(length(traced), true_length, .01 * true_length);
-      for (const TracedCurve& c : traced.curves)
-        for (const FeatureCurve& truth : cloud.truth.curves)
-          if (truth.patches == c.patches &&
-              truth.nearest(c.points[c.points.size() / 2]).distance < cloud.patches.spacing)
-            EXPECT_EQ(c.is_convex, truth.angle_deg[truth.angle_deg.size() / 2] < 180);
+      for (const TracedCurve& c : traced.curves) {
+        for (const FeatureCurve& truth : cloud.truth.curves) {
+          if (truth.patches != c.patches) continue;
+          if (truth.nearest(c.points[c.points.size() / 2]).distance > cloud.patches.spacing) continue;
+          EXPECT_EQ(c.is_convex, truth.angle_deg[truth.angle_deg.size() / 2] < 180);
+        }
+      }
     }
   }
 }
@@ -74,7 +76,8 @@ TEST(FeatureTracing, PointsAreOnBothPatchesAndCornersOnAll) {
   for (const TracedCurve& c : traced.curves)
     for (std::size_t k = 0; k < c.points.size(); ++k) {
       for (const int p : c.patches) EXPECT_NEAR(fits[p].evaluate(c.points[k], nullptr, nullptr), 0, 1e-6 * s);
-      if (k > 0) EXPECT_LE((c.points[k] - c.points[k - 1]).norm(), .5 * s);
+      if (k == 0) continue;
+      EXPECT_LE((c.points[k] - c.points[k - 1]).norm(), .5 * s);
     }
 }
 
