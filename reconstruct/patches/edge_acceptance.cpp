@@ -1,6 +1,8 @@
 #include "reconstruct/patches/edge_acceptance.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "common/disjoint_sets.h"
 #include "reconstruct/patches/patch_growing.h"
@@ -13,7 +15,7 @@ using Border = SamplePatches::Border;
 constexpr double kCorner = 3;   ///< spacings: patches that touch along less meet at a corner
 constexpr double kEnough = .5;  ///< share of the sites of a sharp border that are accepted
 constexpr double kHardly = .1;  ///< share of a border that is certainly not sharp
-constexpr int kRounds = 20;     ///< on all clouds of the tests merging ends after five
+constexpr int kRounds = 60;     ///< on all clouds of the tests merging ends after ten
 
 /// A border and the share of its sites that are accepted.
 struct JudgedBorder {
@@ -56,47 +58,63 @@ std::vector<JudgedBorder> judged_borders(const PatchCloud& cloud, const std::vec
   return borders;
 }
 
-/// The border of a patch that speaks least for an edge, and its longest border; -1: none.
-struct PatchBorders {
-  int weakest = -1, longest = -1;
-  bool has_edge = false;
-};
-
-std::vector<PatchBorders> borders_of_patches(const std::vector<JudgedBorder>& borders, std::size_t n_patches) {
-  std::vector<PatchBorders> patches(n_patches);
-  for (int k = 0; k < static_cast<int>(borders.size()); ++k) {
-    const auto& [border, accepted] = borders[static_cast<std::size_t>(k)];
-    for (const int p : {border.a, border.b}) {
-      PatchBorders& patch = patches[static_cast<std::size_t>(p)];
-      patch.has_edge |= border.sharp;
-      if (patch.longest < 0 || border.length > borders[static_cast<std::size_t>(patch.longest)].border.length)
-        patch.longest = k;
-      if (border.length < kCorner) continue;
-      if (patch.weakest < 0 || accepted < borders[static_cast<std::size_t>(patch.weakest)].accepted) patch.weakest = k;
-    }
+/// The borders across which patches merge, those that speak least for an edge first. A patch that has no sharp border
+/// and touches others at corners only merges across its longest border.
+std::vector<JudgedBorder> weak_borders(const std::vector<JudgedBorder>& borders, std::size_t n_patches) {
+  std::vector<JudgedBorder> weak;
+  std::vector<char> is_settled(n_patches);
+  for (const JudgedBorder& judged : borders) {
+    const auto& [border, accepted] = judged;
+    if (border.sharp || border.length >= kCorner)
+      is_settled[static_cast<std::size_t>(border.a)] = is_settled[static_cast<std::size_t>(border.b)] = 1;
+    if (!border.sharp && border.length >= kCorner) weak.push_back(judged);
   }
-  return patches;
+  for (const JudgedBorder& judged : borders) {
+    const auto a = static_cast<std::size_t>(judged.border.a), b = static_cast<std::size_t>(judged.border.b);
+    if (!is_settled[a] || !is_settled[b]) weak.push_back(judged);
+  }
+  std::stable_sort(weak.begin(), weak.end(), [](const JudgedBorder& s, const JudgedBorder& t) {
+    return s.accepted != t.accepted ? s.accepted < t.accepted : s.border.length > t.border.length;
+  });
+  return weak;
 }
 
-/// Merges across borders that are certainly not sharp, and across others that are the weakest of both patches: the
-/// evidence at the other borders of these patches improves when they are one. A patch that has no sharp border and
-/// touches others at corners only merges across its longest border.
-/// @return true if any patches merged
-bool merge_across(const std::vector<JudgedBorder>& borders, std::vector<int>& labels) {
-  const auto count = static_cast<std::size_t>(renumber(labels));
-  const std::vector<PatchBorders> patches = borders_of_patches(borders, count);
-  DisjointSets sets(count);
-  for (int k = 0; k < static_cast<int>(borders.size()); ++k) {
-    const auto& [border, accepted] = borders[static_cast<std::size_t>(k)];
-    if (border.sharp || border.length < kCorner) continue;
-    const bool is_weakest = patches[static_cast<std::size_t>(border.a)].weakest == k &&
-                            patches[static_cast<std::size_t>(border.b)].weakest == k;
-    if (accepted < kHardly || is_weakest) sets.unite(border.a, border.b);
+/// Patches with a sharp border between them before anything merged. They stay apart: otherwise all that is near a badly
+/// sampled detail would become one patch, step by step.
+class SharpPairs {
+ public:
+  SharpPairs(const std::vector<JudgedBorder>& borders, const std::vector<int>& labels) {
+    std::vector<std::size_t> first;  // sample of each patch
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      if (static_cast<std::size_t>(labels[i]) == first.size()) first.push_back(i);
+    for (const JudgedBorder& judged : borders)
+      if (judged.border.sharp)
+        pairs_.emplace_back(first[static_cast<std::size_t>(judged.border.a)],
+                            first[static_cast<std::size_t>(judged.border.b)]);
   }
-  for (const PatchBorders& patch : patches) {
-    if (patch.has_edge || patch.weakest >= 0 || patch.longest < 0) continue;
-    const Border& border = borders[static_cast<std::size_t>(patch.longest)].border;
-    sets.unite(border.a, border.b);
+  /// The pairs by their present labels.
+  std::set<std::pair<int, int>> now(const std::vector<int>& labels) const {
+    std::set<std::pair<int, int>> result;
+    for (const auto& [i, j] : pairs_) result.insert(std::minmax(labels[i], labels[j]));
+    return result;
+  }
+
+ private:
+  std::vector<std::pair<std::size_t, std::size_t>> pairs_;
+};
+
+/// Merges pairs of patches across the weakest borders. No patch merges twice, because the evidence at its other borders
+/// changes. @return true if any patches merged
+bool merge_across(const std::vector<JudgedBorder>& borders, const SharpPairs& sharp, std::vector<int>& labels) {
+  const auto count = static_cast<std::size_t>(renumber(labels));
+  const std::set<std::pair<int, int>> apart = sharp.now(labels);
+  std::vector<char> has_merged(count);
+  DisjointSets sets(count);
+  for (const JudgedBorder& judged : weak_borders(borders, count)) {
+    const auto a = static_cast<std::size_t>(judged.border.a), b = static_cast<std::size_t>(judged.border.b);
+    if (has_merged[a] || has_merged[b] || apart.count({judged.border.a, judged.border.b})) continue;
+    has_merged[a] = has_merged[b] = 1;
+    sets.unite(judged.border.a, judged.border.b);
   }
   for (int& label : labels) label = sets.find(label);
   return static_cast<std::size_t>(renumber(labels)) < count;
@@ -107,7 +125,8 @@ bool merge_across(const std::vector<JudgedBorder>& borders, std::vector<int>& la
 std::vector<Border> accept_edges(const PatchCloud& cloud, std::vector<int>& labels, const EdgeThresholds& enough) {
   renumber(labels);
   std::vector<JudgedBorder> judged = judged_borders(cloud, labels, enough);
-  for (int round = 0; round < kRounds && merge_across(judged, labels); ++round)
+  const SharpPairs sharp(judged, labels);
+  for (int round = 0; round < kRounds && merge_across(judged, sharp, labels); ++round)
     judged = judged_borders(cloud, labels, enough);
   std::vector<Border> borders;
   for (const JudgedBorder& border : judged) borders.push_back(border.border);

@@ -29,6 +29,9 @@ inline constexpr std::size_t kFewestSegmented = 100;
 /// More is asked where patches are not quadrics up to noise, as on organic shapes. If normals are estimated, such a
 /// cloud is one patch, and so is one with a noise of more than .3 spacings.
 ///
+/// Given normals that are averages over neighbours hide edges. If they show none, but patches are quadrics up to a
+/// noise of .06 spacings, the same is tried with normals from positions.
+///
 /// @param points   finite
 /// @param normals  outward; unit, or zero where unknown
 /// @param spacing  sample spacing (sample_spacing()), model units; > 0

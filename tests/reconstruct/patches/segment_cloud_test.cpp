@@ -118,6 +118,20 @@ TEST_P(SegmentPart, HasThemByPositionsAlone) {
   for (const double noise : {0., .001}) expect_the_patches_of(GetParam(), {noise, 0}, false);
 }
 
+TEST(SegmentCloud, NormalsThatAreAveragedAtEdgesHideNone) {
+  PartCloud cloud = sample_part(part_named("cube-ball"), kSamples, 1);
+  add_noise(cloud, .0005, 0, 1);
+  const std::vector<Vec3> exact = cloud.normals;
+  NeighbourTree(cloud.points).for_each_neighbourhood(12, [&](std::uint32_t i, std::span<const Neighbour> near) {
+    Vec3 sum = Vec3::Zero();
+    for (const Neighbour& other : near) sum += exact[other.point];
+    cloud.normals[i] = sum.normalized();
+  });
+  const SamplePatches found = segmented(cloud);
+  EXPECT_EQ(found.count, 7);
+  EXPECT_EQ(n_sharp(found), 15);
+}
+
 TEST(SegmentCloud, BordersHaveAngleAndLengthOfTheEdges) {
   const SamplePatches found = segmented(sample_part(part_named("cube"), kSamples, 3));
   ASSERT_EQ(n_sharp(found), 12);
