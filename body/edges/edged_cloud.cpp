@@ -11,9 +11,24 @@
 namespace umtet {
 namespace {
 
+// A cloud of more samples is divided only if this many of them show a sharp edge: most clouds have none.
+constexpr std::size_t kAsked = 60'000;
+
 bool has_sharp_border(const SamplePatches& patches) {
   return std::any_of(patches.borders.begin(), patches.borders.end(),
                      [](const SamplePatches::Border& b) { return b.sharp; });
+}
+
+/// Whether every k-th sample alone shows a sharp edge; samples are sorted in space.
+bool some_show_edges(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, bool has_measured_normals) {
+  const std::size_t every = (points.size() + kAsked - 1) / kAsked;
+  std::vector<Vec3> some, of_some;
+  for (std::size_t i = 0; i < points.size(); i += every) {
+    some.push_back(points[i]);
+    of_some.push_back(normals[i]);
+  }
+  const double spacing = sample_spacing(neighbour_distances(some, kAreaNeighbours));
+  return has_sharp_border(segment_cloud(some, of_some, spacing, {.measured_normals = has_measured_normals}));
 }
 
 }  // namespace
@@ -27,6 +42,7 @@ EdgedCloud edged_cloud(const OrientedPointCloud& cloud, NeighbourDistances near,
   made.shift = box.center();
   std::vector<Vec3> points = cloud.points;
   for (Vec3& x : points) x -= made.shift;
+  if (points.size() > kAsked && !some_show_edges(points, cloud.normals, has_measured_normals)) return made;
   if (near.nearest.empty()) near = neighbour_distances(points, kAreaNeighbours);
   made.patches = segment_cloud(points, cloud.normals, sample_spacing(near), {.measured_normals = has_measured_normals});
   if (!has_sharp_border(made.patches)) return made;

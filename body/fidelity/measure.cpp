@@ -341,7 +341,7 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
   input.context = context;
   Measurement made;
   MeshMeasures& m = made.measures;
-  if (domain.level_set) m.n_points = domain.cloud.points.size();
+  if (domain.has_samples()) m.n_points = domain.cloud.points.size();
   m.input = domain.facts;
   m.mesh = params.certificate ? *params.certificate
            : params.features  ? certify_patches(*domain.piecewise, std::move(input), *params.features)
