@@ -24,7 +24,7 @@ enum class NormalsOf {
   Estimate  ///< all normals are estimated
 };
 
-/// The use of the sharp edges of triangles.
+/// The use of the sharp edges of triangles and clouds.
 enum class SharpEdgeUse {
   Auto,  ///< each smooth patch has a function of its own, and the mesh has the edges
   Off,   ///< one smooth level set, which rounds the edges

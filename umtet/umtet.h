@@ -105,10 +105,10 @@ FittedBody fit_body(TriangleMesh triangles, const Options& options = {});
 /// \throw ResourceLimit, UsageError, Cancelled
 Mesh mesh_body(const FittedBody& body, const Options& options = {});
 
-/// Fits psi and meshes it. Triangles with sharp edges get a function for each smooth patch instead of a fit, and the
-/// mesh has the edges; if that mesh is not right, psi is fitted. Edges are found by angle; TriangleMesh::lines and the
-/// borders between TriangleMesh::labels are edges, too, and the only ones with SharpEdgeUse::Given.
-/// \throw as fit_body() and mesh_body()
+/// Fits psi and meshes it. Clouds and triangles with sharp edges get a function for each smooth patch instead of a fit,
+/// and the mesh has the edges; if that mesh is not right, psi is fitted. Edges are found by angle; TriangleMesh::lines
+/// and the borders between TriangleMesh::labels are edges, too, and the only ones with SharpEdgeUse::Given. \throw as
+/// fit_body() and mesh_body()
 Mesh mesh_body(OrientedPointCloud cloud, const Options& options = {});
 Mesh mesh_body(TriangleMesh triangles, const Options& options = {});
 
