@@ -4,8 +4,8 @@
 #include <set>
 #include <utility>
 
-#include "common/disjoint_sets.h"
 #include "reconstruct/patches/patch_growing.h"
+#include "reconstruct/patches/patch_mergers.h"
 
 namespace umtet {
 namespace {
@@ -15,7 +15,7 @@ using Border = SamplePatches::Border;
 constexpr double kCorner = 3;   ///< spacings: patches that touch along less meet at a corner
 constexpr double kEnough = .5;  ///< share of the sites of a sharp border that are accepted
 constexpr double kHardly = .1;  ///< share of a border that is certainly not sharp
-constexpr int kRounds = 60;     ///< on all clouds of the tests merging ends after ten
+constexpr int kRounds = 20;     ///< on all clouds of the tests merging ends after ten
 
 /// A border and the share of its sites that are accepted.
 struct JudgedBorder {
@@ -103,20 +103,21 @@ class SharpPairs {
   std::vector<std::pair<std::size_t, std::size_t>> pairs_;
 };
 
-/// Merges pairs of patches across the weakest borders. No patch merges twice, because the evidence at its other borders
-/// changes. @return true if any patches merged
+/// Merges patches across borders, the weakest first. Across borders that may be edges no patch merges twice, because
+/// the evidence at its other borders changes. @return true if any patches merged
 bool merge_across(const std::vector<JudgedBorder>& borders, const SharpPairs& sharp, std::vector<int>& labels) {
   const auto count = static_cast<std::size_t>(renumber(labels));
-  const std::set<std::pair<int, int>> apart = sharp.now(labels);
+  PatchMergers mergers(count);
+  for (const auto& [a, b] : sharp.now(labels)) mergers.keep_apart(a, b);
+  for (const JudgedBorder& judged : borders)
+    if (judged.border.sharp) mergers.keep_apart(judged.border.a, judged.border.b);
   std::vector<char> has_merged(count);
-  DisjointSets sets(count);
-  for (const JudgedBorder& judged : weak_borders(borders, count)) {
-    const auto a = static_cast<std::size_t>(judged.border.a), b = static_cast<std::size_t>(judged.border.b);
-    if (has_merged[a] || has_merged[b] || apart.count({judged.border.a, judged.border.b})) continue;
-    has_merged[a] = has_merged[b] = 1;
-    sets.unite(judged.border.a, judged.border.b);
+  for (const auto& [border, accepted] : weak_borders(borders, count)) {
+    const auto a = static_cast<std::size_t>(border.a), b = static_cast<std::size_t>(border.b);
+    if (accepted >= kHardly && (has_merged[a] || has_merged[b])) continue;
+    if (mergers.unite(border.a, border.b)) has_merged[a] = has_merged[b] = 1;
   }
-  for (int& label : labels) label = sets.find(label);
+  for (int& label : labels) label = mergers.find(label);
   return static_cast<std::size_t>(renumber(labels)) < count;
 }
 

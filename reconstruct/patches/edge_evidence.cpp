@@ -186,6 +186,12 @@ std::vector<char> accepted_sites(const PatchCloud& cloud, const std::vector<Bord
   const std::vector<std::size_t> size = network_sizes(cloud, sites, accepted, kTogether);
   for (std::size_t k = 0; k < sites.size(); ++k)
     if (static_cast<double>(size[k]) * kLengthPerSite < enough.length) accepted[k] = 0;
+  double turning = 0, sharp = 0;
+  for (std::size_t k = 0; k < sites.size(); ++k) {
+    turning += evidence[k].count > 0 && evidence[k].angle > enough.angle ? 1 : 0;
+    sharp += accepted[k] ? 1 : 0;
+  }
+  if (sharp < enough.common * turning) accepted.assign(sites.size(), 0);
   return accepted;
 }
 

@@ -41,9 +41,11 @@ struct EdgeThresholds {
   double two;     ///< largest two
   double gain;    ///< least one / two
   double length;  ///< least length of a network of edges, in sample spacings
+  double common;  ///< least share of the sites with such an angle that are accepted
 };
 
-/// Which sites belong to edges: those with enough evidence, in networks that are long enough.
+/// Which sites belong to edges: those with enough evidence, in networks that are long enough. None do if few of the
+/// sites with a large angle do: the creases of organic shapes and rounded parts are sharp by chance at some places.
 std::vector<char> accepted_sites(const PatchCloud& cloud, const std::vector<BorderSite>& sites,
                                  const std::vector<SiteEvidence>& evidence, const EdgeThresholds& enough);
 

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
-#include "common/disjoint_sets.h"
 #include "reconstruct/patches/measures.h"
 #include "reconstruct/patches/patch_growing.h"
+#include "reconstruct/patches/patch_mergers.h"
 
 namespace umtet {
 namespace {
@@ -58,40 +57,10 @@ bool has_sharp_stretch(const PatchCloud& cloud, std::span<const BorderSite> site
   return *std::max_element(size.begin(), size.end()) >= kStretch;
 }
 
-/// Sets of patches, some of which must not be united.
-class Mergers {
- public:
-  explicit Mergers(std::size_t count) : sets_(count), apart_(count) {}
-
-  void keep_apart(int a, int b) {
-    apart_[static_cast<std::size_t>(a)].insert(b);
-    apart_[static_cast<std::size_t>(b)].insert(a);
-  }
-  /// @return true if they were in two sets and are now in one
-  bool unite(int a, int b) {
-    a = sets_.find(a);
-    b = sets_.find(b);
-    if (a == b || apart_[static_cast<std::size_t>(a)].count(b)) return false;
-    sets_.unite(a, b);
-    const int root = sets_.find(a), other = a + b - root;
-    for (const int c : apart_[static_cast<std::size_t>(other)]) {
-      apart_[static_cast<std::size_t>(c)].erase(other);
-      keep_apart(root, c);
-    }
-    apart_[static_cast<std::size_t>(other)].clear();
-    return true;
-  }
-  int find(int a) { return sets_.find(a); }
-
- private:
-  DisjointSets sets_;
-  std::vector<std::set<int>> apart_;  ///< by root: the roots of other sets
-};
-
 }  // namespace
 
 bool merge_smooth_borders(const PatchCloud& cloud, std::vector<int>& labels) {
-  Mergers mergers(static_cast<std::size_t>(renumber(labels)));
+  PatchMergers mergers(static_cast<std::size_t>(renumber(labels)));
   const std::vector<BorderSite> sites = border_sites(cloud, labels);
   std::vector<double> turns(sites.size());
   tbb::parallel_for(std::size_t{0}, sites.size(), [&](std::size_t k) { turns[k] = turn_at(cloud, labels, sites[k]); });

@@ -34,17 +34,20 @@ constexpr double kMostPositionNoise = .3;
 /// gradually at an edge, because a scanner's program averaged them.
 constexpr double kMostClearNoise = .06;
 
+/// Parts have .54 and more, a helmet with creases and other organic scans .05 and less.
+constexpr double kCommon = .2;
+
 /// Of parts with measured normals. Fillets with a radius of one spacing have a share of .64 and less at any noise,
 /// edges of the parts of the tests one of .7 and more. At holes made of facets, normals leave a `two` of 5.
-constexpr EdgeThresholds kPartEdges = {0, .67, 8, 1.3, 8};
+constexpr EdgeThresholds kPartEdges = {0, .67, 3, 1.3, 8, kCommon};
 /// Of parts with estimated normals: the same fillets have shares of up to .82, and `two` of 1.6 and more.
-constexpr EdgeThresholds kPositionEdges = {0, .55, 1.7, 2, 8};
+constexpr EdgeThresholds kPositionEdges = {0, .55, 1.7, 2, 8, kCommon};
 /// Of organic shapes with measured normals.
-constexpr EdgeThresholds kOrganicEdges = {0, .7, 1.6, 3, 12};
+constexpr EdgeThresholds kOrganicEdges = {0, .8, 1.6, 4, 12, kCommon};
 
 /// Least length of a network of edges over the diagonal of the cloud: where scans with an offset overlap, as in the ten
-/// of the Stanford bunny, false edges of 2 % arise.
-constexpr double kLeastOfDiagonal = .03;
+/// of the Stanford bunny, false edges of 3 % arise.
+constexpr double kLeastOfDiagonal = .05, kLeastOfOrganicDiagonal = .2;
 
 PatchCloud scaled_cloud(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double spacing,
                         bool measured) {
@@ -119,7 +122,8 @@ Division divided(const std::vector<Vec3>& points, const std::vector<Vec3>& norma
   } else {
     EdgeThresholds enough = !result.is_part() ? kOrganicEdges : measured ? kPartEdges : kPositionEdges;
     enough.angle = least_angle;
-    enough.length = std::max(enough.length, kLeastOfDiagonal * diagonal(cloud.points));
+    enough.length = std::max(enough.length,
+                             (result.is_part() ? kLeastOfDiagonal : kLeastOfOrganicDiagonal) * diagonal(cloud.points));
     result.patches.borders = accept_edges(cloud, labels, enough);
     for (SamplePatches::Border& border : result.patches.borders) border.length *= spacing;
   }
