@@ -15,7 +15,7 @@ using Border = SamplePatches::Border;
 constexpr double kCorner = 3;   ///< spacings: patches that touch along less meet at a corner
 constexpr double kEnough = .5;  ///< share of the sites of a sharp border that are accepted
 constexpr double kHardly = .1;  ///< share of a border that is certainly not sharp
-constexpr int kRounds = 20;     ///< on all clouds of the tests merging ends after ten
+constexpr int kRounds = 20;     ///< a bound on the time
 
 /// A border and the share of its sites that are accepted.
 struct JudgedBorder {

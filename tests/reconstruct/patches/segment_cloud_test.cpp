@@ -86,13 +86,14 @@ double found_edges(const PartCloud& cloud, const SamplePatches& found) {
 
 std::size_t n_faces(const PartCloud& cloud) { return std::set<int>(cloud.patch.begin(), cloud.patch.end()).size(); }
 
-void expect_the_patches_of(const std::string& name, const Noise& noise, bool measured = true) {
+void expect_the_patches_of(const std::string& name, const Noise& noise, bool measured = true,
+                           double most_wrong = .001) {
   PartCloud cloud = sample_part(part_named(name), kSamples, 1, true);
   add_noise(cloud, noise.position, noise.degrees, 2);
   const SamplePatches found = segmented(cloud, measured);
   const std::string what = name + " with noise " + std::to_string(noise.position);
   EXPECT_EQ(static_cast<std::size_t>(found.count), n_faces(cloud)) << what;
-  EXPECT_LE(wrong_away_from_edges(cloud, found), .001) << what;
+  EXPECT_LE(wrong_away_from_edges(cloud, found), most_wrong) << what;
   EXPECT_EQ(found_edges(cloud, found), 1) << what;
   for (const auto& border : found.borders) EXPECT_TRUE(border.sharp || border.length < 3 * found.spacing) << what;
 }
@@ -109,10 +110,7 @@ TEST_P(SegmentPart, HasThemWithLittleNoise) {
   for (const Noise& noise : kLittle) expect_the_patches_of(GetParam(), noise);
 }
 
-TEST_P(SegmentPart, HasThemWithMuchNoise) {
-  // At 20 degrees the edges of 45 degrees of the fan are lost.
-  if (GetParam() != "fan") expect_the_patches_of(GetParam(), {.005, 20});
-}
+TEST_P(SegmentPart, HasThemWithMuchNoise) { expect_the_patches_of(GetParam(), {.005, 20}, true, .002); }
 
 TEST_P(SegmentPart, HasThemByPositionsAlone) {
   for (const double noise : {0., .001}) expect_the_patches_of(GetParam(), {noise, 0}, false);
