@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "common/polled_loops.h"
@@ -37,7 +39,10 @@ constexpr double kMostF = 4, kFFloor = 1e-6;
 constexpr double kCurvature = .05, kLeastNoise = .02;
 // A sample is no part of the patch if it is off by this many robust standard deviations, and by this part of s.
 constexpr double kOutlier = 5, kOutlierOff = .5;
-constexpr double kLeastSlope = 1e-3;   // of f at a sample
+constexpr double kLeastSlope = 1e-3;  // of f at a sample
+// A sample whose fourth neighbour of the patch is farther is alone: in the corner of a square it is about 2.2 s away.
+constexpr std::size_t kCompany = 4;
+constexpr double kAlone = 2.5;
 constexpr double kMostOutliers = .05;  // of the samples: more of them are misfit
 
 /// Weights of the splines, with cells that resolve what each weight leaves: on a surface with one sample in s^2, a wave
@@ -249,6 +254,16 @@ struct PatchFit::Parts {
     }
   }
 
+  /// Takes samples out that are far from the others. They would bend all functions.
+  void drop_isolated() {
+    if (at.x.size() <= kCompany) return;
+    std::vector<std::uint8_t> is_isolated(at.x.size(), 0);
+    NeighbourTree(at.x).for_each_neighbourhood(kCompany + 1, [&](std::uint32_t i, std::span<const Neighbour> near) {
+      is_isolated[i] = near.back().distance2 > square(kAlone) ? 1 : 0;
+    });
+    drop(is_isolated);
+  }
+
   /// Takes samples out that are no part of the patch. \return whether there are some
   bool drop_outliers() {
     std::vector<double> off;
@@ -256,11 +271,18 @@ struct PatchFit::Parts {
     const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
     std::nth_element(off.begin(), middle, off.end());
     const double most = std::max(kOutlier * 1.4826 * *middle, kOutlierOff);
-    const auto n = std::count_if(r.begin(), r.end(), [&](double f) { return std::abs(f) > most; });
-    if (n == 0 || static_cast<double>(n) > kMostOutliers * static_cast<double>(r.size())) return false;
+    std::vector<std::uint8_t> is_off;
+    for (const double f : r) is_off.push_back(std::abs(f) > most ? 1 : 0);
+    return drop(is_off);
+  }
+
+  /// Takes some samples out, unless they are many. \return whether it did
+  bool drop(const std::vector<std::uint8_t>& is_out) {
+    const auto n = std::count(is_out.begin(), is_out.end(), 1);
+    if (n == 0 || static_cast<double>(n) > kMostOutliers * static_cast<double>(is_out.size())) return false;
     Scaled kept{{}, {}, at.noise};
-    for (std::size_t i = 0; i < r.size(); ++i) {
-      if (std::abs(r[i]) > most) continue;
+    for (std::size_t i = 0; i < is_out.size(); ++i) {
+      if (is_out[i] != 0) continue;
       kept.x.push_back(at.x[i]);
       kept.n.push_back(at.n[i]);
     }
@@ -277,6 +299,7 @@ PatchFit::PatchFit(const PatchSamples& samples) {
   for (const Vec3& x : samples.points) parts->mean += x / static_cast<double>(samples.points.size());
   parts->at = {{}, samples.normals, samples.noise / samples.spacing};
   for (const Vec3& x : samples.points) parts->at.x.emplace_back((x - parts->mean) / parts->s);
+  parts->drop_isolated();
   parts->fit();
   if (parts->drop_outliers()) parts->fit();
   parts_ = std::move(parts);

@@ -25,8 +25,8 @@ Surface plane() {
 }
 /// A ball of radius R below.
 Surface ball(double R) {
-  const auto point = [R](double x, double y) { return Vec3(x, y, std::sqrt(R * R - x * x - y * y) - R); };
-  return {point, [=](double x, double y) { return (point(x, y) + Vec3(0, 0, R)).normalized(); }};
+  const auto point = [R](double x, double y) -> Vec3 { return Vec3(x, y, std::sqrt(R * R - x * x - y * y) - R); };
+  return {point, [=](double x, double y) -> Vec3 { return (point(x, y) + Vec3(0, 0, R)).normalized(); }};
 }
 Surface pipe(double R) {
   return {[R](double x, double y) { return Vec3(R * std::sin(x / R), y, R * std::cos(x / R)); },
@@ -34,10 +34,10 @@ Surface pipe(double R) {
 }
 /// The outer part of a torus of radii R and r.
 Surface torus(double R, double r) {
-  const auto normal = [=](double x, double y) {
+  const auto normal = [=](double x, double y) -> Vec3 {
     return Vec3(std::cos(y / r) * std::sin(x / (R + r)), std::sin(y / r), std::cos(y / r) * std::cos(x / (R + r)));
   };
-  return {[=](double x, double y) {
+  return {[=](double x, double y) -> Vec3 {
             return Vec3(R * std::sin(x / (R + r)), 0, R * std::cos(x / (R + r))) + r * normal(x, y);
           },
           normal};
