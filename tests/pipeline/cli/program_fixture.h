@@ -35,7 +35,7 @@ inline std::string without_run(const fs::path& file) {
   return json.dump();
 }
 
-class Program : public testing::Test {
+class Program : public ::testing::Test {
  protected:
   struct Result {
     int code;
