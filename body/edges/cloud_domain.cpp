@@ -25,6 +25,9 @@ constexpr double kNearCurve = 2, kNearCorner = 2.5;
 
 // A sample whose foot is farther, in spacings and in standard deviations of the noise, is an outlier.
 constexpr double kFarthestFoot = 1, kNoises = 5;
+// So is one with fewer samples of its patch within this distance: in the corner of a square the fourth is 2.2 s away.
+constexpr int kCompany = 4;
+constexpr double kAlone = 2.5;
 constexpr int kSteps = 4;            // of Newton's method: within a spacing it doubles the digits each time
 constexpr double kOnBoundary = .01;  // in spacings
 
@@ -86,10 +89,17 @@ class CloudSurface {
     return {value(p, x), p};
   }
 
-  /// The feet of the samples on their patches. Those of outliers are far away, and those beyond the curves of their
-  /// patch are not on the boundary: both are left out.
+  /// The feet of the samples on their patches. Those of outliers are far away, or far from other samples of the patch,
+  /// and those beyond the curves of their patch are not on the boundary: all of these are left out.
   void place_feet(const std::vector<Vec3>& points, const SamplePatches& patches) {
     std::vector<Vec3> feet;
+    const NeighbourTree samples(points);
+    const auto has_company = [&](std::size_t i) {
+      int n = 0;
+      samples.within(points[i], square(kAlone * s_),
+                     [&](std::uint32_t j, double) { n += patches.patch[j] == patches.patch[i] ? 1 : 0; });
+      return n > kCompany;  // the sample itself is one
+    };
     const double farthest = std::max(kFarthestFoot * s_, kNoises * patches.noise);
     for (std::size_t i = 0; i < points.size(); ++i) {
       Vec3 x = points[i];
@@ -98,7 +108,7 @@ class CloudSurface {
         const double f = patch(patches.patch[i], x, &g, nullptr);
         x -= f / g.squaredNorm() * g;
       }
-      if (!((x - points[i]).norm() <= farthest)) continue;
+      if (!((x - points[i]).norm() <= farthest) || !has_company(i)) continue;
       if (!(std::abs(psi(x, patches.patch[i], 0).value) <= kOnBoundary * s_)) continue;
       feet.push_back(x);
       patch_.push_back(patches.patch[i]);

@@ -46,7 +46,7 @@ void expect_signs(const CloudDomain& made, const PiecewiseDomain& truth, const E
 }
 
 void expect_mesh(const CloudDomain& made, const EdgedCloud& cloud) {
-  const double h = 3 * cloud.patches.spacing;
+  const double h = 2.5 * cloud.patches.spacing;
   const BackgroundMesh background(a15(), box_around(cloud.exact, 4 * h), h);
   const PiecewiseMesh mesh = make_piecewise_mesh(made.domain, background, {}, {}, &made.graph);
   ASSERT_EQ(mesh.status, UmStatus::Success);
