@@ -62,7 +62,7 @@ LevelSetReport write_edges(const StageContext& context, const EdgedTriangles& ed
   curves.chains.resize(curves.graph.curves.size());
   report.shift = edged.shift;
   const StageState state = inspect_stage(context.paths, Stage::Cloud, Json::object(), std::nullopt);
-  const TriangleReport& samples = cloud_report(*state.record).triangles->body;
+  const TriangleReport samples = cloud_report(*state.record).triangles->body;
   report.fit.n_points = samples.n_samples;
   report.fit.cloud_spacing = samples.spacing;
   write_features(context.paths.folder(Stage::LevelSet) / kFeatureFile, curves, edged.shift);
