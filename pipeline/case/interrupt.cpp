@@ -57,9 +57,9 @@ std::int64_t now() {
 }
 
 /// Builds a short text without allocation and writes it in one call: a pipe takes up to PIPE_BUF bytes atomically.
-class Words {
+class ErrorText {
  public:
-  Words& operator<<(std::string_view text) {
+  ErrorText& operator<<(std::string_view text) {
     size_ += text.copy(text_ + size_, sizeof(text_) - size_);
     return *this;
   }
@@ -82,11 +82,11 @@ class Words {
 /// allocated or caught. Every file of a case is renamed into place when it is complete, so the process may end at
 /// any instruction.
 /// @param code  the status in digits
-[[noreturn]] void end_now(const Words& error, const char* code, int status) {
-  (Words() << "\numtet: " << error.text() << "\n").write(STDERR_FILENO);
+[[noreturn]] void end_now(const ErrorText& error, const char* code, int status) {
+  (ErrorText() << "\numtet: " << error.text() << "\n").write(STDERR_FILENO);
   if (const char* command = answers_to.load()) {
-    (Words() << "{\n  \"schema\": 1,\n  \"command\": \"" << command << "\",\n  \"exit_code\": " << code
-             << ",\n  \"error\": \"" << error.text() << "\"\n}\n")
+    (ErrorText() << "{\n  \"schema\": 1,\n  \"command\": \"" << command << "\",\n  \"exit_code\": " << code
+                 << ",\n  \"error\": \"" << error.text() << "\"\n}\n")
         .write(STDOUT_FILENO);
   }
   ::_exit(status);
@@ -97,7 +97,7 @@ void stop_now(int signal) {
   if (!last_word_taken.exchange(true)) {
     const char* what = signal == SIGALRM ? "out of time" : signal == SIGTERM ? "terminated" : "interrupted";
     const char* code = signal == SIGALRM ? "9" : signal == SIGTERM ? "143" : "130";
-    end_now(Words() << what << " in " << work.load() << "; the case can be resumed with the same command", code,
+    end_now(ErrorText() << what << " in " << work.load() << "; the case can be resumed with the same command", code,
             code_of(signal));
   }
   if (last_word_said) return;
@@ -141,7 +141,7 @@ extern "C" void hear(int signal) {
     if (is_first && last_word_taken.exchange(true))
       ::_exit(status);  // this thread was writing the answer: there is no second answer
     if (!is_first) take_last_word();
-    end_now(Words() << "out of memory in " << work.load(), "9", status);
+    end_now(ErrorText() << "out of memory in " << work.load(), "9", status);
   } catch (...) {
   }
   if (other_end) other_end();  // the former handler prints the exception

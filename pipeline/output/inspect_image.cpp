@@ -18,7 +18,7 @@ namespace umtet {
 namespace {
 
 // Maximum number of parts in the text; the document contains all.
-constexpr std::size_t kListed = 40;
+constexpr std::size_t kListedParts = 40;
 
 const char* name_of(GridKind kind) {
   switch (kind) {
@@ -101,7 +101,7 @@ std::string inspection_text(const ImageInspection& found) {
       fmt::format("image     {}: {}, {} x {} x {} voxels of {:.4g} x {:.4g} x {:.4g}, values {:g} to {:g}\n",
                   found.file, name_of(found.kind), found.n[0], found.n[1], found.n[2], found.steps[0], found.steps[1],
                   found.steps[2], found.least, found.greatest);
-  for (std::size_t i = 0; i < std::min(kListed, found.parts.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kListedParts, found.parts.size()); ++i) {
     const ImageInspection::Part& part = found.parts[i];
     const std::size_t n = part.shape.pieces_by_points, n_faces = part.shape.pieces_by_faces;
     out += fmt::format(
@@ -110,8 +110,8 @@ std::string inspection_text(const ImageInspection& found) {
         n_faces == n ? "" : fmt::format(" ({} if voxels need a common face)", n_faces), part.shape.thickness_p01,
         part.shape.thickness_median, part.voxels.at_wall ? ", reaches the wall of the image" : "");
   }
-  if (found.parts.size() > kListed)
-    out += fmt::format("          and {} more parts (--json lists them)\n", found.parts.size() - kListed);
+  if (found.parts.size() > kListedParts)
+    out += fmt::format("          and {} more parts (--json lists them)\n", found.parts.size() - kListedParts);
   if (found.suggested_level) {
     const double level = *found.suggested_level;
     out += fmt::format("level     such as --level {:g}: for values above {:g}, which {}; :{:g} for values below\n",

@@ -8,7 +8,8 @@ namespace umtet {
 namespace {
 
 // Dimensions of the document and of the axes in it, in pixels.
-constexpr double kWidth = 640, kHeight = 300, kLeft = 50, kRight = 620, kTop = 30, kBottom = 255;
+constexpr double kStepWidth = 640, kStepHeight = 300, kStepLeft = 50, kStepRight = 620, kStepTop = 30,
+                 kStepBottom = 255;
 
 class Plot {
  public:
@@ -21,8 +22,8 @@ class Plot {
   std::string operator()();
 
  private:
-  double x(double t) const { return kLeft + (kRight - kLeft) * (t - first_) / (last_ - first_); }
-  static double y(double q) { return kBottom + (kTop - kBottom) * std::clamp(q, 0., 1.); }
+  double x(double t) const { return kStepLeft + (kStepRight - kStepLeft) * (t - first_) / (last_ - first_); }
+  static double y(double q) { return kStepBottom + (kStepTop - kStepBottom) * std::clamp(q, 0., 1.); }
   void text(double at_x, double at_y, const char* anchor, const std::string& words) {
     svg_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", at_x, at_y, anchor, words);
   }
@@ -37,12 +38,12 @@ class Plot {
 void Plot::axes() {
   for (int k = 0; k <= 5; ++k) {
     const double q = k / 5.;
-    svg_ += fmt::format("<path d=\"M{} {:.1f}H{}\" stroke=\"#ddd\"/>\n", kLeft, y(q), kRight);
-    text(kLeft - 6, y(q) + 4, "end", fmt::format("{:.1f}", q));
+    svg_ += fmt::format("<path d=\"M{} {:.1f}H{}\" stroke=\"#ddd\"/>\n", kStepLeft, y(q), kStepRight);
+    text(kStepLeft - 6, y(q) + 4, "end", fmt::format("{:.1f}", q));
     const double t = first_ + q * (last_ - first_);
-    text(x(t), kBottom + 18, "middle", fmt::format("{:.3g}", t));
+    text(x(t), kStepBottom + 18, "middle", fmt::format("{:.3g}", t));
   }
-  text((kLeft + kRight) / 2, kBottom + 36, "middle", "t");
+  text((kStepLeft + kStepRight) / 2, kStepBottom + 36, "middle", "t");
 }
 
 void Plot::curve(double StepQuality::*value, const char* colour, const char* name, double name_x) {
@@ -52,7 +53,7 @@ void Plot::curve(double StepQuality::*value, const char* colour, const char* nam
   }
   svg_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n", points, colour);
   svg_ += fmt::format("<g fill=\"{}\">", colour);
-  text(name_x, kTop - 10, "start", name);
+  text(name_x, kStepTop - 10, "start", name);
   svg_ += "</g>\n";
 }
 
@@ -60,12 +61,12 @@ std::string Plot::operator()() {
   svg_ = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" font-size=\"12\">\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-      kWidth, kHeight);
+      kStepWidth, kStepHeight);
   axes();
-  curve(&StepQuality::p01, "#1f77b4", "1 % quantile", kLeft + 120);
-  curve(&StepQuality::min, "#2ca02c", "minimum mean ratio", kLeft);
+  curve(&StepQuality::p01, "#1f77b4", "1 % quantile", kStepLeft + 120);
+  curve(&StepQuality::min, "#2ca02c", "minimum mean ratio", kStepLeft);
   for (const StepQuality& s : steps_) {
-    if (!s.made) svg_ += fmt::format("<path d=\"M{:.1f} {}V{}\" stroke=\"#d62728\"/>\n", x(s.t), kTop, kBottom);
+    if (!s.made) svg_ += fmt::format("<path d=\"M{:.1f} {}V{}\" stroke=\"#d62728\"/>\n", x(s.t), kStepTop, kStepBottom);
   }
   return svg_ + "</svg>\n";
 }

@@ -19,7 +19,7 @@ namespace {
 
 // psi and |grad psi| in single precision take 16 MB.
 constexpr double kMostNodes = 2e6;
-constexpr std::size_t kValuesPerPoll = 100'000;
+constexpr std::size_t kNodesPerPoll = 100'000;
 
 /// Returns psi at the nodes of a grid that fills the box, in model coordinates.
 Image sampled(const Domain& domain, double h) {
@@ -34,7 +34,7 @@ Image sampled(const Domain& domain, double h) {
   const Vec3 step = size.cwiseQuotient((n.array() - 1).matrix().cast<double>()), origin = domain.box.min();
   const std::size_t n_nodes = static_cast<std::size_t>(n.x()) * n.y() * n.z();
   std::vector<float> psi(n_nodes), slope(n_nodes);
-  polled_parallel_for(n_nodes, kValuesPerPoll, until_interrupted(), [&](std::size_t k) {
+  polled_parallel_for(n_nodes, kNodesPerPoll, until_interrupted(), [&](std::size_t k) {
     const std::size_t row = k / n.x(), layer = row / n.y();
     const Vec3 at(static_cast<double>(k % n.x()), static_cast<double>(row % n.y()), static_cast<double>(layer));
     Vec3 g;

@@ -3,27 +3,27 @@
 namespace umtet {
 namespace {
 
-Json json_of(const PieceCount& count) { return {{"by_points", count.by_points}, {"by_faces", count.by_faces}}; }
+Json json_of_pieces(const PieceCount& count) { return {{"by_points", count.by_points}, {"by_faces", count.by_faces}}; }
 
 PieceCount piece_count_from(const Json& json) { return {json.at("by_points"), json.at("by_faces")}; }
 
 }  // namespace
 
 Json to_json(const LabelVolumeReport& r) {
-  return {{"part", umtet::json_of(r.part)},
-          {"kernel", umtet::json_of(r.kernel)},
+  return {{"part", json_of(r.part)},
+          {"kernel", json_of(r.kernel)},
           {"n_voxels", r.n_voxels},
           {"volume_of_voxels", r.volume_of_voxels},
           {"volume_of_psi", r.volume_of_psi},
           {"volume_of_mesh", r.volume_of_mesh},
-          {"pieces", json_of(r.pieces)},
+          {"pieces", json_of_pieces(r.pieces)},
           {"pieces_of_mesh", r.pieces_of_mesh},
-          {"cavities", json_of(r.cavities)},
+          {"cavities", json_of_pieces(r.cavities)},
           {"cavities_of_mesh", r.cavities_of_mesh},
           {"n_changed", r.n_changed},
           {"n_changed_by_more_than_half_a_voxel", r.n_changed_far},
           {"farthest_changed_voxels", r.farthest_changed},
-          {"farthest_changed_at", r.farthest_at ? umtet::json_of(*r.farthest_at) : Json(nullptr)}};
+          {"farthest_changed_at", r.farthest_at ? json_of(*r.farthest_at) : Json(nullptr)}};
 }
 
 LabelVolumeReport label_volume_from(const Json& json) {

@@ -242,7 +242,7 @@ LevelSetReport level_set_from(const Json& json) {
   return r;
 }
 
-MeshReport mesh_from(const Json& json) {
+MeshReport mesh_report_from(const Json& json) {
   return {.conditioning_angle_max_deg = number_from(json.at("conditioning_angle_max_deg")),
           .n_psi_evaluations = json.at("n_psi_evaluations"),
           .measured = measures_from(json.at("measured"))};
@@ -363,7 +363,7 @@ Json to_json(const MeshReport& r) {
 
 CloudReport cloud_report(const StageRecord& record) { return report_of(record, &cloud_from); }
 LevelSetReport level_set_report(const StageRecord& record) { return report_of(record, &level_set_from); }
-MeshReport mesh_report(const StageRecord& record) { return report_of(record, &mesh_from); }
+MeshReport mesh_report(const StageRecord& record) { return report_of(record, &mesh_report_from); }
 
 std::optional<Json> wanted_of(const StageRecord& record) {
   return report_of<std::optional<Json>>(record, [](const Json& json) -> std::optional<Json> {

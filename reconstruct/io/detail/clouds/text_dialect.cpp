@@ -63,7 +63,7 @@ Commas commas_of(const std::vector<std::string_view>& words) {
   return commas;
 }
 
-TextDialect dialect_of(std::string_view line) {
+TextDialect dialect_of_line(std::string_view line) {
   TextDialect dialect;
   std::vector<std::string_view> words;
   if (line.find(';') != std::string_view::npos) {
@@ -96,7 +96,7 @@ TextDialect dialect_of(const std::vector<std::string_view>& lines, char end_of_l
   std::array<std::size_t, kKinds> votes{};
   for (const std::string_view line : lines) {
     if (has_numbers && !begins_like_number(line)) continue;
-    const TextDialect of_line = dialect_of(line);
+    const TextDialect of_line = dialect_of_line(line);
     ++votes[2 * static_cast<std::size_t>(of_line.between) + (of_line.decimal_comma ? 1 : 0)];
   }
   // Whole numbers show no decimal comma, so that one line with a comma speaks for all of its kind without one.

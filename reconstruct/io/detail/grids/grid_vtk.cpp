@@ -8,9 +8,9 @@ namespace {
 
 constexpr int kMostLines = 1000;  // before the numbers
 
-class Reader {
+class LegacyReader {
  public:
-  explicit Reader(GridSource& source) : source_(source) {}
+  explicit LegacyReader(GridSource& source) : source_(source) {}
 
   Grid read() {
     source_.line();  // # vtk DataFile Version
@@ -90,6 +90,6 @@ class Reader {
 
 }  // namespace
 
-Grid read_structured_points(GridSource& source) { return Reader(source).read(); }
+Grid read_structured_points(GridSource& source) { return LegacyReader(source).read(); }
 
 }  // namespace umtet::detail
