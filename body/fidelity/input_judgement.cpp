@@ -39,10 +39,13 @@ void add_noise(const MeshMeasures& m, std::vector<InputDefect>& defects) {
                  noise)});
 }
 
+/// Given normals decide on a scan with large holes, although nothing else does. Where many normals were turned, they
+/// contradict something.
 void add_sides(const InputFacts& facts, std::vector<InputDefect>& defects) {
   const double guessed = std::min(1., facts.doubtful);
-  if (guessed <= kMuchGuessed) return;
-  defects.push_back({InputDefectKind::Sides, guessed, guessed <= kMostlyGuessed,
+  const bool were_turned = facts.turned > kMuchGuessed;
+  if (guessed <= kMuchGuessed || (facts.normals_given && !were_turned)) return;
+  defects.push_back({InputDefectKind::Sides, guessed, guessed <= kMostlyGuessed || !were_turned,
                      formatted("the outward side of %.0f %% of the samples is a guess", 100 * guessed)});
 }
 

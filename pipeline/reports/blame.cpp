@@ -45,7 +45,7 @@ std::optional<Blame> blame_of_normals(const MeshMeasures& m) {
                  remedy};
   }
   if (facts.doubtful > kManyWrong) {
-    return Blame{"normals", fmt::format("the outward side of {:.2g} % of the samples is a guess", 100 * facts.doubtful),
+    return Blame{"normals", fmt::format("the outward side of {:.0f} % of the samples is a guess", 100 * facts.doubtful),
                  remedy};
   }
   if (facts.opposed > kManyWrong) {

@@ -90,7 +90,7 @@ TEST(InputJudgement, AGuessIsNamedAndABodyThatIsMostlyInventedFails) {
   EXPECT_NE(judged(guessing(.95)).blame->number.find("95 %"), std::string::npos);
 }
 
-TEST(InputJudgement, ABodyWhoseOutwardSideIsMostlyAGuessFails) {
+TEST(InputJudgement, ABodyWhoseOutwardSideIsAGuessFailsWhereNormalsWereTurned) {
   MeshMeasures m = guessing(0);
   m.cloud.emplace();
   m.input.emplace();
@@ -99,6 +99,10 @@ TEST(InputJudgement, ABodyWhoseOutwardSideIsMostlyAGuessFails) {
     return judged(m).verdict.word();
   };
   EXPECT_EQ(word(.2), "pass");
+  EXPECT_EQ(word(1), "pass with 1 defect named");
+  m.input->normals_given = true;
+  EXPECT_EQ(word(1), "pass") << "an open scan with normals";
+  m.input->turned = .3;
   EXPECT_EQ(word(.3), "pass with 1 defect named");
   EXPECT_EQ(word(1), "fail");
   EXPECT_EQ(judged(m).blame->stage, "normals");
