@@ -21,7 +21,7 @@ Box box_of(const TriangleMesh& mesh) {
 std::vector<int> labels_of_patches(const GivenTriangles& triangles) {
   const std::vector<int>& labels = triangles.whole.labels;
   if (labels.empty()) return {};
-  constexpr int kUnknown = -1;
+  constexpr int kUnknown = -1;  // no triangle yet
   std::vector<int> of_patch(triangles.edges.n_patches, kUnknown);
   for (std::size_t f = 0; f < labels.size(); ++f) {
     int& label = of_patch[triangles.edges.patch[f]];

@@ -113,19 +113,20 @@ std::vector<Phase> phases(const Meshed& m, const std::filesystem::path& file) {
     Options options;
     options.box = flat.box;
     options.body.mesh.background = "graded";
-    options.body.mesh.tets = 20000;
+    options.body.mesh.tets = 6000;
     benchmark::DoNotOptimize(mesh_body(flat, options));
   });
   phase("thin scan", [&] {
     Options options;
     options.body.mesh.background = "graded";
-    options.body.mesh.h = .1;
-    options.body.mesh.h_min = .05;
+    options.body.mesh.h = .12;
+    options.body.mesh.h_min = .06;
     benchmark::DoNotOptimize(mesh_body(m.thin, options));
   });
   phase("part with edges", [] {
-    TriangleMesh part = test::open_box({20, 12, 8}, 2);
-    benchmark::DoNotOptimize(mesh_body(std::move(part)));
+    Options options;
+    options.body.mesh.h = .1;
+    benchmark::DoNotOptimize(mesh_body(test::cube(), options));
   });
   phase("writing", [&, file] { write_vtu(file, {.mesh = m.mesh, .point_data = {}, .cell_data = {}}); });
   return all;
