@@ -38,7 +38,7 @@ struct PatchBorder {
   std::vector<Vec3> points;  ///< of curves
   std::vector<int> curves;   ///< of each point
   std::optional<NeighbourTree> tree;
-  std::vector<int> corners;  ///< those of three and more patches
+  std::vector<int> corners;  ///< corners where three or more patches meet
 };
 
 /// Patches, curves and corners around the samples of a cloud.

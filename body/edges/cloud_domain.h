@@ -26,7 +26,7 @@ struct CloudDomain {
 /// minimum. Near a corner, in the same way, psi is given by its table of signs (corner_table.h).
 ///
 /// Curves are the common zero sets of their patches.
-/// @param points  of the cloud; the normals are those of `patches`
+/// @param points  of the cloud; `patches` contains the normals
 /// @return none if no border is sharp
 /// \throw std::invalid_argument as fit_patches(); Cancelled
 std::optional<CloudDomain> cloud_domain(const std::vector<Vec3>& points, const SamplePatches& patches,

@@ -18,7 +18,7 @@ namespace {
 // In h: what the file of a mesh leaves of the distance of a vertex to its patch.
 constexpr double kOnPatch = 1e-6;
 
-// Of the cosines of two patches that go on into one another: their normals differ by less than 3 degrees.
+// Two patches continue each other where the cosine of their normals is greater than 1 minus this: 3 degrees.
 constexpr double kAlike = 1e-3;
 
 /// One patch, negative inside, as an implicit function; psi as a whole for -1.

@@ -54,7 +54,7 @@ class PatchFit {
 };
 
 /// The functions of all patches of a cloud, by number. The result does not depend on the number of threads.
-/// @param points  of the cloud; the normals are those of `patches`
+/// @param points  of the cloud; `patches` contains the normals
 /// \throw std::invalid_argument as PatchFit, also if a patch has no samples; Cancelled
 std::vector<PatchFit> fit_patches(const std::vector<Vec3>& points, const SamplePatches& patches,
                                   const Context& context = {});
