@@ -238,6 +238,7 @@ std::optional<CloudDomain> cloud_domain(const std::vector<Vec3>& points, const S
   if (all.count < 2 || all.borders.empty()) return std::nullopt;
   const auto surface = std::make_shared<const CloudSurface>(points, all, context);
   std::vector<PatchFunction> functions;
+  functions.reserve(static_cast<std::size_t>(surface->n_patches()));
   for (int p = 0; p < surface->n_patches(); ++p)
     functions.push_back([surface, p](const Vec3& x, Vec3* g, Mat3* H) { return surface->patch(p, x, g, H); });
   return CloudDomain{

@@ -20,8 +20,8 @@ ZeroFreeBlocks::ZeroFreeBlocks(ImplicitFunctionRef f, const Box& box, double rea
   is_free_.resize(layer * static_cast<std::size_t>(n_[2]));
   const double needed = std::sqrt(3.) * (edge_ / 2 + reach);
   polled_parallel_for(is_free_.size(), kBlocksPerPoll, context, [&](std::size_t b) {
-    const Eigen::Array3d at(static_cast<double>(b % row), static_cast<double>(b % layer / row),
-                            static_cast<double>(b / layer));
+    const std::size_t in_layer = b % layer, i = in_layer % row, j = in_layer / row, k = b / layer;
+    const Eigen::Array3d at(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
     is_free_[b] = std::abs(f.value(origin_ + (edge_ * (at + .5)).matrix())) > needed ? 1 : 0;
   });
 }

@@ -115,6 +115,7 @@ class Dissection {
   static void add(const std::vector<int>& unknowns, const std::vector<int>& uses, const Eigen::MatrixXd& A,
                   const Eigen::VectorXd& b, Front& front) {
     std::vector<Eigen::Index> at;
+    at.reserve(unknowns.size());
     for (const int u : unknowns)
       at.push_back(std::lower_bound(front.unknowns.begin(), front.unknowns.end(), u) - front.unknowns.begin());
     for (std::size_t j = 0; j < at.size(); ++j) {

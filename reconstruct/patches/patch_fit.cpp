@@ -336,6 +336,7 @@ std::vector<PatchFit> fit_patches(const std::vector<Vec3>& points, const SampleP
     made[p].emplace(samples[p]);
   });
   std::vector<PatchFit> fits;
+  fits.reserve(made.size());
   for (auto& fit : made) fits.push_back(std::move(*fit));
   return fits;
 }
