@@ -130,6 +130,7 @@ std::vector<Border> accept_edges(const PatchCloud& cloud, std::vector<int>& labe
   for (int round = 0; round < kRounds && merge_across(judged, sharp, labels); ++round)
     judged = judged_borders(cloud, labels, enough);
   std::vector<Border> borders;
+  borders.reserve(judged.size());
   for (const JudgedBorder& border : judged) borders.push_back(border.border);
   if (std::none_of(borders.begin(), borders.end(), [](const Border& border) { return border.sharp; })) {
     std::fill(labels.begin(), labels.end(), 0);

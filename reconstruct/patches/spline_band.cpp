@@ -63,6 +63,7 @@ std::array<int, 3> SplineBand::lattice_cell(const Vec3& x) const {
 
 SplineBand::SplineBand(const std::vector<Vec3>& points, double H, int rings) : H_(H) {
   std::vector<std::array<int, 3>> own;
+  own.reserve(points.size());
   for (const Vec3& x : points) own.push_back(lattice_cell(x));
   const auto unique = [](std::vector<std::array<int, 3>>& some) {
     std::sort(some.begin(), some.end(), [](const auto& a, const auto& b) { return key(a) < key(b); });
@@ -145,7 +146,7 @@ Eigen::MatrixXd SplineBand::energy(int order) const {
     for (int j = 0; i + j <= order; ++j) {
       const int k = order - i - j;
       const Eigen::Matrix4d X = products(i), Y = products(j), Z = products(k);
-      const double factor = factorial(order) / (factorial(i) * factorial(j) * factorial(k));
+      const int factor = factorial(order) / (factorial(i) * factorial(j) * factorial(k));  // a whole number
       for (int a = 0; a < kNodes; ++a)
         for (int b = 0; b < kNodes; ++b)
           E(a, b) += factor * X(a % 4, b % 4) * Y(a / 4 % 4, b / 4 % 4) * Z(a / 16, b / 16);
