@@ -12,8 +12,8 @@
 namespace umtet {
 
 /// The patch of each boundary face of a mesh whose file does not have it: all corners are within `tolerance` of the
-/// patch and, where several are such, the normal of the face is nearest to that of the patch. Of patches with the same
-/// normal, as two parts of a plane have it, it is the one that is active at the centroid. -1: there is none.
+/// patch and, where several are such, the normal of the face is nearest to that of the patch. If several
+/// patches have the same normal, like two parts of a plane, the one that is active at the centroid is chosen. -1: none.
 /// @param tolerance  model units
 /// Cost: one value of each patch per vertex. \throw Cancelled
 std::vector<int> patches_by_position(const PiecewiseDomain& body, const std::vector<Vec3>& V,

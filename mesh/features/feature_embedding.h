@@ -41,9 +41,9 @@ double best_wedge_quality(double angle_deg, int k);
 
 /// Embeds a feature graph in the boundary of omega_h.
 ///
-/// 1. Corners take the nearest boundary vertices, the nearest pairs first. Here and below, a vertex at which another
-///    patch decides psi than those of the corner or curve counts as two edges farther: the other side of a thin wall may
-///    be nearer than its own.
+/// 1. Corners take the nearest boundary vertices, the nearest pairs first. A vertex counts as two edges farther, here
+///    and below, if the corner or curve is not on the patch that decides psi at the vertex: the other side of a thin
+///    wall may be nearer than the right one.
 /// 2. Each curve becomes the path of boundary edges of least cost between its corners, the sum over edges of
 ///
 ///        (distance / h)^2 + .15 length / h + 8 max(0, .95 - Q_max(angle / k))^2

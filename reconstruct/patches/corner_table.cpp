@@ -76,7 +76,7 @@ std::vector<std::uint32_t> corner_terms(const std::vector<Vec3>& normals, const 
     if (own.size() != 2) return {};
     sectors.push_back(sector_of(static_cast<int>(p), normals, *own[0], *own[1]));
   }
-  // Of each set of negative signs: how clearly its directions are outside.
+  // How clearly the directions with each set of negative signs are outside.
   std::vector<double> outside(std::size_t{1} << k, 0);
   for (int d = 0; d < kDirections; ++d) {
     const Vec3 u = direction(d);
