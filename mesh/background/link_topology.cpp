@@ -33,9 +33,9 @@ LinkMask component(const LinkTopology& link, LinkMask part) {
   return reached;
 }
 
-bool is_connected(const LinkTopology& link, LinkMask part) { return part != 0 && component(link, part) == part; }
-
 }  // namespace
+
+bool LinkTopology::is_connected(LinkMask part) const { return part != 0 && component(*this, part) == part; }
 
 LinkState LinkTopology::find_state(LinkMask inside) const {
   LinkState s;
@@ -56,7 +56,7 @@ LinkState LinkTopology::find_state(LinkMask inside) const {
     ++degree[a];
     ++degree[b];
   }
-  s.simple = is_connected(*this, inside) && is_connected(*this, outside);
+  s.simple = is_connected(inside) && is_connected(outside);
   if (!s.simple || twice || s.n_positive_faces == 0) return s;
   // The positive edges around the inside part must be one cycle. Outside vertices off it are deeper outside, because
   // the outside part is connected.

@@ -44,6 +44,8 @@ struct LinkTopology {
   LinkMask full() const { return n == 0 ? 0 : ~LinkMask{0} >> (kMaxLink - n); }
   LinkState state(LinkMask inside) const { return states.empty() ? find_state(inside) : states[inside]; }
   LinkState find_state(LinkMask inside) const;
+  /// Whether these vertices are connected by edges of the link. False for none.
+  bool is_connected(LinkMask part) const;
 };
 
 /// The link topologies of a tiling, one per vertex type.

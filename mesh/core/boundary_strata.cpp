@@ -32,6 +32,26 @@ double BoundaryStrata::value(int patch, const Vec3& x, Vec3* gradient) const {
   return side * value;
 }
 
+/// Of the patches of a curve, the two whose gradients at x are farthest from parallel. With more than two patches, any
+/// two of them describe the curve.
+std::pair<BoundaryStrata::UnitPatch, BoundaryStrata::UnitPatch> BoundaryStrata::steepest_pair(const Stratum& s,
+                                                                                              const Vec3& x) const {
+  std::vector<UnitPatch> all(s.patches.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k].value = value(s.patches[k], x, &all[k].gradient);
+    const double norm = all[k].gradient.norm();
+    all[k].value /= norm;
+    all[k].gradient /= norm;
+  }
+  std::pair<std::size_t, std::size_t> best{0, 1};
+  double least = 2;
+  for (std::size_t a = 1; a < all.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (const double cosine = std::abs(all[a].gradient.dot(all[b].gradient)); cosine < least)
+        least = cosine, best = {b, a};
+  return {all[best.first], all[best.second]};
+}
+
 FreeDirections BoundaryStrata::directions(int stratum, const Vec3& x) const {
   FreeDirections free;
   const Stratum& s = strata_[stratum];
@@ -39,6 +59,15 @@ FreeDirections BoundaryStrata::directions(int stratum, const Vec3& x) const {
   if (s.course) {
     free.n = 1;
     free.tangents.col(0) = s.course->nearest(x).tangent;
+    return free;
+  }
+  if (s.patches.size() > 2) {
+    const auto [a, b] = steepest_pair(s, x);
+    const Vec3 along = a.gradient.cross(b.gradient);
+    const double sine = along.norm();
+    if (!(sine > kLeastSine)) return free;
+    free.n = 1;
+    free.tangents.col(0) = along / sine;
     return free;
   }
   Vec3 g;
@@ -101,10 +130,17 @@ bool BoundaryStrata::foot(int stratum, const Vec3& x, double h, Vec3& place, con
       off = step.norm();
     } else {
       Vec3 a, b;
-      double fa = value(s.patches[0], y, &a), fb = value(s.patches[1], y, &b);
-      const double la = a.norm(), lb = b.norm();
-      if (!(la > 0 && lb > 0) || !std::isfinite(fa) || !std::isfinite(fb)) return false;
-      a /= la, b /= lb, fa /= la, fb /= lb;
+      double fa, fb;
+      if (s.patches.size() > 2) {
+        const auto [first, second] = steepest_pair(s, y);
+        a = first.gradient, b = second.gradient, fa = first.value, fb = second.value;
+        if (!a.allFinite() || !b.allFinite() || !std::isfinite(fa) || !std::isfinite(fb)) return false;
+      } else {
+        fa = value(s.patches[0], y, &a), fb = value(s.patches[1], y, &b);
+        const double la = a.norm(), lb = b.norm();
+        if (!(la > 0 && lb > 0) || !std::isfinite(fa) || !std::isfinite(fb)) return false;
+        a /= la, b /= lb, fa /= la, fb /= lb;
+      }
       const double c = a.dot(b), det = 1 - c * c;
       if (!(det > kLeastSine * kLeastSine)) return false;
       step = -((fa - c * fb) / det * a + (fb - c * fa) / det * b);

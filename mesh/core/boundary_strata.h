@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "mesh/core/piecewise_domain.h"
@@ -23,8 +24,10 @@ struct Stratum {
     double within;  ///< distance from the end in which the tangent describes the curve, model units
   };
 
-  int dimension = 2;          ///< degrees of freedom: 2 on a patch, 1 on a curve, 0 at a corner
-  std::vector<int> patches;   ///< ascending; empty: the surface psi = 0 as a whole, where no patch is known
+  int dimension = 2;  ///< degrees of freedom: 2 on a patch, 1 on a curve, 0 at a corner
+  /// Ascending. More than two on a curve: any two describe it. Empty: the surface psi = 0 as a whole, where no patch is
+  /// known.
+  std::vector<int> patches;
   Vec3 place = Vec3::Zero();  ///< of a corner
   std::vector<End> ends;      ///< of a curve that is not closed
   /// Of a curve that is known as a polyline: its vertices are on it, and the patches are not evaluated. Null otherwise.
@@ -82,6 +85,13 @@ class BoundaryStrata {
   bool is_in_closure(int a, int b) const;
 
  private:
+  /// The function of a patch, divided by the norm of its gradient.
+  struct UnitPatch {
+    double value;
+    Vec3 gradient;  ///< of unit length; not finite where there is none
+  };
+  std::pair<UnitPatch, UnitPatch> steepest_pair(const Stratum& s, const Vec3& x) const;
+
   const PiecewiseDomain* domain_;
   std::vector<Stratum> strata_;
 };

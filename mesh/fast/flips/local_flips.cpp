@@ -31,8 +31,9 @@ constexpr std::size_t kMostTurns = 50, kTurnsAnyway = 1000;
 class LocalFlips {
  public:
   LocalFlips(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<Stratum>& stratum, ImplicitFunctionRef psi,
-             const LocalFlipParams& params, LocalFlipReport& report, const StratifiedVertices* strata)
-      : mesh_(std::move(V), std::move(C), stratum, strata),
+             const LocalFlipParams& params, LocalFlipReport& report, const StratifiedVertices* strata,
+             std::vector<int> region)
+      : mesh_(std::move(V), std::move(C), stratum, strata, std::move(region)),
         n_given_(mesh_.C.size()),
         alive_(mesh_.C.size(), 1),
         version_(mesh_.C.size(), 0),
@@ -72,27 +73,27 @@ class LocalFlips {
     double q = detail::mean_ratio_of(mesh_.V, t);
     const auto n_on_boundary =
         std::count_if(t.begin(), t.end(), [&](int v) { return mesh_.stratum[v] == Stratum::Boundary; });
-    if (n_on_boundary >= 3) q = std::min(q, detail::quality_of_cosine(params_.target, least_cosine(t)));
+    if (n_on_boundary >= 3) q = std::min(q, detail::quality_of_cosine(params_.target, least_cosine(tet)));
     if (q < std::min(params_.target, is_last_ ? params_.mend_below_at_last : params_.mend_below))
       queue_.emplace(q, tet, version_[tet]);
   }
 
-  /// Of the faces of a tet that lie on the boundary.
-  double least_cosine(const Tet& t) {
+  /// Of the faces of a tet that lie on the boundary, or between its region and a lesser one.
+  double least_cosine(int tet) {
+    const Tet& t = mesh_.C[tet];
     double least = 1;
     for (const auto& f : kTetFace) {
       const Triangle face = {t[f[0]], t[f[1]], t[f[2]]};
       if (!std::all_of(face.begin(), face.end(), [&](int v) { return mesh_.stratum[v] == Stratum::Boundary; }))
         continue;
-      const std::span<const int> around = mesh_.incidence.of(face[0]);
-      const auto n = std::count_if(around.begin(), around.end(), [&](int s) {
-        return detail::contains(mesh_.C[s], face[1]) && detail::contains(mesh_.C[s], face[2]);
-      });
-      if (n != 1) continue;
+      const int behind = tet_behind(tet, face);
+      if (behind >= 0 && mesh_.region_of(behind) >= mesh_.region_of(tet)) continue;
       const Vec3 &a = mesh_.V[face[0]], &b = mesh_.V[face[1]], &c = mesh_.V[face[2]];
       Vec3 gradient;
       const Vec3 centroid = (a + b + c) / 3;
-      if (mesh_.stratified) {
+      if (mesh_.stratified && behind >= 0) {
+        mesh_.value_between(mesh_.region_of(tet), mesh_.region_of(behind), centroid, gradient);
+      } else if (mesh_.stratified) {
         mesh_.value_on_patch(face, centroid, gradient);
       } else {
         psi_.value(centroid, gradient);
@@ -103,6 +104,15 @@ class LocalFlips {
       least = std::min(least, std::isfinite(cosine) ? cosine : -1);
     }
     return least;
+  }
+
+  /// The other tet with a face; -1: none.
+  int tet_behind(int tet, const Triangle& face) const {
+    const std::span<const int> around = mesh_.incidence.of(face[0]);
+    const auto at = std::find_if(around.begin(), around.end(), [&](int s) {
+      return s != tet && detail::contains(mesh_.C[s], face[1]) && detail::contains(mesh_.C[s], face[2]);
+    });
+    return at == around.end() ? -1 : *at;
   }
 
   void mend(int tet) {
@@ -147,14 +157,16 @@ class LocalFlips {
       for (const Tet& t : c.new_tets) {
         const auto id = static_cast<int>(mesh_.C.size());
         mesh_.C.push_back(t);
+        if (mesh_.has_regions())
+          mesh_.region.push_back(c.new_regions[static_cast<std::size_t>(&t - c.new_tets.data())]);
         alive_.push_back(1);
         version_.push_back(0);
         for (const int v : t) mesh_.incidence.add(v, id);
-        if (!mesh_.stratified) enqueue(id);
+        if (!mesh_.stratified && !mesh_.has_regions()) enqueue(id);
       }
       // With strata once all of them are there: before, a face between two new tets looks like one of the boundary, and
       // the tet is tried in vain. A smooth boundary keeps its bytes.
-      if (mesh_.stratified)
+      if (mesh_.stratified || mesh_.has_regions())
         for (std::size_t k = mesh_.C.size() - c.new_tets.size(); k < mesh_.C.size(); ++k) enqueue(static_cast<int>(k));
     }
     for (const int t : c.changes_tets() ? trials_.kept_tets() : trials_.patch_tets()) {
@@ -168,6 +180,7 @@ class LocalFlips {
     made.V = std::move(mesh_.V);
     for (std::size_t t = 0; t < mesh_.C.size(); ++t) {
       if (!alive_[t]) continue;
+      if (mesh_.has_regions()) made.region.push_back(mesh_.region[t]);
       report_.n_below += detail::mean_ratio_of(made.V, mesh_.C[t]) < params_.target ? 1 : 0;
       made.C.push_back(mesh_.C[t]);
       made.origin.push_back(t < n_given_ ? static_cast<std::int64_t>(t) : -1);
@@ -208,13 +221,15 @@ std::vector<std::string> problems(const LocalFlipParams& params) {
 
 FlippedMesh flip_locally(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<VertexStratum>& stratum,
                          ImplicitFunctionRef psi, const LocalFlipParams& params, LocalFlipReport& report,
-                         const Context& context, const StratifiedVertices* strata) {
+                         const Context& context, const StratifiedVertices* strata, std::vector<int> region) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (stratum.size() != V.size() || (strata && strata->of.size() != V.size()))
     all += (all.empty() ? "" : "; ") + std::string("one stratum for each vertex");
+  if (!region.empty() && region.size() != C.size())
+    all += (all.empty() ? "" : "; ") + std::string("one region for each tet");
   if (!all.empty()) throw std::invalid_argument(all);
-  return LocalFlips(std::move(V), std::move(C), stratum, psi, params, report, strata)(context);
+  return LocalFlips(std::move(V), std::move(C), stratum, psi, params, report, strata, std::move(region))(context);
 }
 
 }  // namespace umtet

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,8 @@ enum class VertexStratum : std::uint8_t {
 struct StratifiedVertices {
   const BoundaryStrata* strata = nullptr;
   std::vector<int> of;  ///< per vertex; read for Boundary vertices
+  /// The patch of the faces between two regions; empty: the strata of its corners decide on the patch of a face.
+  std::function<int(int, int)> between = {};
 };
 
 /// A tet mesh whose connectivity changes.
@@ -66,6 +69,7 @@ struct FlippedMesh {
   /// Per tet: its number in the mesh that was given, or -1 for a tet that an operation made. Numbers ascend, and tets
   /// with -1 come last.
   std::vector<std::int64_t> origin;
+  std::vector<int> region;  ///< per tet; empty: one region
 };
 
 /// Raises tets below a target by local changes of connectivity.
@@ -96,10 +100,17 @@ struct FlippedMesh {
 ///
 /// @param V, C      a valid mesh: every tet positive; moved in
 /// @param stratum   per vertex; Boundary ones lie on psi = 0 and on the boundary of the mesh
+/// In a mesh of several regions, faces between two regions take the place of the boundary. They are removed together
+/// on both sides: the two parts of the ring around an edge become triangulations that share the new edge. Boundary
+/// vertices lie between two regions, and psi is negative in the greater one. The boundary of the mesh stays as it is:
+/// its vertices are Fixed.
+///
 /// @param strata    null for a smooth boundary; must outlive the call
+/// @param region    per tet; empty: one region
 /// \throw std::invalid_argument naming every broken constraint, Cancelled
 FlippedMesh flip_locally(std::vector<Vec3> V, std::vector<Tet> C, const std::vector<VertexStratum>& stratum,
                          ImplicitFunctionRef psi, const LocalFlipParams& params, LocalFlipReport& report,
-                         const Context& context = {}, const StratifiedVertices* strata = nullptr);
+                         const Context& context = {}, const StratifiedVertices* strata = nullptr,
+                         std::vector<int> region = {});
 
 }  // namespace umtet

@@ -54,19 +54,37 @@ bool keeps_patches(const ChangingMesh& mesh, int a, int b, const EdgeRing& ring)
   return true;
 }
 
-/// Offers the triangulation of a ring whose worst tet is best [Klincsek1980], [Shewchuk2002].
-void offer_removal(const ChangingMesh& mesh, int a, int b, const std::vector<int>& tets, const EdgeRing& ring,
-                   std::vector<FlipCandidate>& candidates) {
-  const std::vector<Stratum>& stratum = mesh.stratum;
-  const std::vector<int>& r = ring.vertices;
+/// The tets of one region around an edge: those between the vertices of a part of its ring.
+struct Fan {
+  std::vector<int> vertices;
+  int region = 0;
+};
+
+/// The fans of a ring, each from one face between two regions to the next; one fan where all tets are of one region.
+std::vector<Fan> fans_of(const ChangingMesh& mesh, const EdgeRing& ring) {
+  const auto n = ring.tets.size();
+  std::size_t first = 0;
+  if (ring.is_closed)
+    for (std::size_t k = 1; k < n && first == 0; ++k)
+      if (mesh.region_of(ring.tets[k]) != mesh.region_of(ring.tets[k - 1])) first = k;
+  std::vector<Fan> fans;
+  for (std::size_t k = first; k < first + n; ++k) {
+    const int region = mesh.region_of(ring.tets[k % n]);
+    if (fans.empty() || fans.back().region != region) fans.push_back({{ring.vertices[k % n]}, region});
+    fans.back().vertices.push_back(ring.vertices[(k + 1) % ring.vertices.size()]);
+  }
+  // A closed ring of one region is the polygon of its vertices, without the first one again.
+  if (fans.size() == 1 && ring.is_closed) fans.front().vertices.pop_back();
+  return fans;
+}
+
+/// Adds the tets of the best triangulation of a polygon around (a, b), and lowers `least` of the candidate to the worst
+/// of them [Klincsek1980], [Shewchuk2002].
+void triangulate(const ChangingMesh& mesh, const Fan& fan, FlipCandidate& c) {
+  const std::vector<int>& r = fan.vertices;
   const auto n = static_cast<int>(r.size());
   if (n < 3) return;
-  if (!ring.is_closed) {
-    if (stratum[a] != Stratum::Boundary || stratum[b] != Stratum::Boundary) return;
-    if (stratum[r.front()] != Stratum::Boundary || stratum[r.back()] != Stratum::Boundary) return;
-    if (mesh.are_neighbours(r.front(), r.back())) return;
-    if (mesh.stratified && !lies_on_one_patch(mesh, a, b, r.front(), r.back())) return;
-  }
+  const int a = c.a, b = c.b;
   std::array<std::array<double, kMostRing + 1>, kMostRing + 1> best{};
   std::array<std::array<int, kMostRing + 1>, kMostRing + 1> middle{};
   for (int i = 0; i + 1 < n; ++i) best[i][i + 1] = kInfinity;
@@ -82,8 +100,7 @@ void offer_removal(const ChangingMesh& mesh, int a, int b, const std::vector<int
       }
     }
   }
-  FlipCandidate c{Operation::RemoveEdge, a, b, best[0][n - 1], tets, {}};
-  std::sort(c.old_tets.begin(), c.old_tets.end());
+  c.least = std::min(c.least, best[0][n - 1]);
   if (!(c.least > 0)) return;
   std::vector<std::pair<int, int>> open = {{0, n - 1}};
   while (!open.empty()) {
@@ -93,10 +110,59 @@ void offer_removal(const ChangingMesh& mesh, int a, int b, const std::vector<int
     const int k = middle[i][j];
     c.new_tets.push_back({a, r[i], r[k], r[j]});
     c.new_tets.push_back({b, r[i], r[j], r[k]});
+    if (mesh.has_regions()) c.new_regions.insert(c.new_regions.end(), 2, fan.region);
     open.emplace_back(i, k);
     open.emplace_back(k, j);
   }
+}
+
+/// Whether the faces (a, b, p) and (a, b, q) of a boundary or an interface may become (a, p, q) and (b, p, q).
+bool may_swap_faces(const ChangingMesh& mesh, int a, int b, int p, int q) {
+  for (const int v : {a, b, p, q})
+    if (mesh.stratum[v] != Stratum::Boundary) return false;
+  if (mesh.has_regions()) return !mesh.is_on_interface(p, q);
+  if (mesh.are_neighbours(p, q)) return false;
+  return !mesh.stratified || lies_on_one_patch(mesh, a, b, p, q);
+}
+
+/// Offers the removal of the edge (a, b): the best triangulation of its ring, or of each of the two parts of the ring
+/// where the edge lies between two regions.
+void offer_removal(const ChangingMesh& mesh, int a, int b, const std::vector<int>& tets, const EdgeRing& ring,
+                   std::vector<FlipCandidate>& candidates) {
+  if (ring.vertices.size() < 3) return;
+  const std::vector<Fan> fans = fans_of(mesh, ring);
+  if (ring.is_closed ? fans.size() > 2 : mesh.has_regions()) return;
+  if (!ring.is_closed || fans.size() == 2) {
+    const std::vector<int>& r = fans.front().vertices;
+    if (!may_swap_faces(mesh, a, b, r.front(), r.back())) return;
+    // The new edge may be in the mesh already where a single tet was between the two faces.
+    const bool has_edge = fans.size() == 2 && fans[0].vertices.size() > 2 && fans[1].vertices.size() > 2 &&
+                          mesh.are_neighbours(r.front(), r.back());
+    if (has_edge) return;
+  }
+  FlipCandidate c{Operation::RemoveEdge, a, b, kInfinity, tets, {}, {}};
+  std::sort(c.old_tets.begin(), c.old_tets.end());
+  for (const Fan& fan : fans) {
+    triangulate(mesh, fan, c);
+    if (!(c.least > 0)) return;
+  }
   candidates.push_back(std::move(c));
+}
+
+/// Whether a vertex between regions may collapse into b: the edge is one of its sheet or curve, which contains b, and
+/// no other vertex is joined to both of them by edges of interfaces.
+bool keeps_interface(const ChangingMesh& mesh, int a, int b, const EdgeRing& ring) {
+  if (!ring.is_closed) return false;
+  const std::vector<Fan> fans = fans_of(mesh, ring);
+  const int dimension = mesh.dimension(a);
+  if (dimension == 0 || (dimension == 2 ? fans.size() != 2 : fans.size() < 3)) return false;
+  if (mesh.stratified && !mesh.stratified->strata->is_in_closure(mesh.stratified->of[b], mesh.stratified->of[a]))
+    return false;
+  return std::none_of(ring.vertices.begin(), ring.vertices.end(), [&](int v) {
+    const bool is_between =
+        std::any_of(fans.begin(), fans.end(), [&](const Fan& fan) { return fan.vertices.front() == v; });
+    return !is_between && mesh.is_on_interface(a, v) && mesh.is_on_interface(b, v);
+  });
 }
 
 /// Offers the collapse of vertex a into b.
@@ -104,9 +170,13 @@ void offer_collapse(const ChangingMesh& mesh, int a, int b, const std::vector<in
                     std::vector<FlipCandidate>& candidates) {
   const std::vector<Stratum>& stratum = mesh.stratum;
   if (stratum[a] == Stratum::Fixed) return;
-  if (stratum[a] == Stratum::Boundary && (ring.is_closed || stratum[b] != Stratum::Boundary)) return;
-  if (stratum[a] == Stratum::Boundary && mesh.stratified && !keeps_patches(mesh, a, b, ring)) return;
-  FlipCandidate c{Operation::Collapse, a, b, kInfinity, {}, {}};
+  if (stratum[a] == Stratum::Boundary) {
+    if (stratum[b] != Stratum::Boundary) return;
+    if (mesh.has_regions() ? !keeps_interface(mesh, a, b, ring) : ring.is_closed) return;
+  }
+  if (stratum[a] == Stratum::Boundary && mesh.stratified && !mesh.has_regions() && !keeps_patches(mesh, a, b, ring))
+    return;
+  FlipCandidate c{Operation::Collapse, a, b, kInfinity, {}, {}, {}};
   for (const int t : mesh.incidence.of(a)) {
     c.old_tets.push_back(t);
     if (contains(mesh.C[t], b)) continue;
@@ -115,6 +185,7 @@ void offer_collapse(const ChangingMesh& mesh, int a, int b, const std::vector<in
     c.least = std::min(c.least, mean_ratio_of(mesh.V, moved));
     if (!(c.least > 0)) return;
     c.new_tets.push_back(moved);
+    if (mesh.has_regions()) c.new_regions.push_back(mesh.region[t]);
   }
   if (c.new_tets.empty()) return;
   std::sort(c.old_tets.begin(), c.old_tets.end());
@@ -159,7 +230,10 @@ FlipCandidate smoothing_around(const ChangingMesh& mesh, int tet) {
     for (const int t : mesh.incidence.of(v)) c.old_tets.push_back(t);
   std::sort(c.old_tets.begin(), c.old_tets.end());
   c.old_tets.erase(std::unique(c.old_tets.begin(), c.old_tets.end()), c.old_tets.end());
-  for (const int t : c.old_tets) c.new_tets.push_back(mesh.C[t]);
+  for (const int t : c.old_tets) {
+    c.new_tets.push_back(mesh.C[t]);
+    if (mesh.has_regions()) c.new_regions.push_back(mesh.region[t]);
+  }
   return c;
 }
 

@@ -24,6 +24,7 @@ struct FlipCandidate {
   double least = 0;           ///< mean ratio of the worst new tet, before its vertices move
   std::vector<int> old_tets;  ///< ascending
   std::vector<Tet> new_tets;
+  std::vector<int> new_regions;  ///< per new tet; empty: one region
 };
 
 /// The removals and collapses of the edges of a tet that are worth a trial, those with the best worst tet first, at

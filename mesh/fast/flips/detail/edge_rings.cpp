@@ -68,11 +68,13 @@ EdgeRing ChangingMesh::ring_of(int a, int b, const std::vector<int>& tets) const
     if (!has_before) first = k;
   }
   ring.vertices = {edge[first].first};
+  ring.tets = {tets[first]};
   int at = edge[first].second;
   for (int k = 1; k < n && at != ring.vertices.front(); ++k) {
     ring.vertices.push_back(at);
     const auto* next = std::find_if(edge.begin(), edge.begin() + n, [&](auto e) { return e.first == at; });
     if (next == edge.begin() + n) return {};
+    ring.tets.push_back(tets[next - edge.begin()]);
     at = next->second;
   }
   ring.is_closed = at == ring.vertices.front();
@@ -83,6 +85,18 @@ EdgeRing ChangingMesh::ring_of(int a, int b, const std::vector<int>& tets) const
 
 double ChangingMesh::value_on_patch(const Triangle& f, const Vec3& x, Vec3& gradient) const {
   return stratified->strata->value(std::max(-1, patch_of(f[0], f[1], f[2])), x, &gradient);
+}
+
+bool ChangingMesh::is_on_interface(int a, int b) const {
+  const std::vector<int> tets = tets_at(a, b);
+  for (const int t : tets) {
+    for (const int v : C[t]) {
+      if (v == a || v == b) continue;
+      const auto is_behind = [&](int s) { return s != t && region_of(s) == region_of(t) && contains(C[s], v); };
+      if (std::none_of(tets.begin(), tets.end(), is_behind)) return true;
+    }
+  }
+  return false;
 }
 
 bool ChangingMesh::are_neighbours(int a, int b) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "mesh/fast/smoothing/all_vertex_smoothing.h"
@@ -55,16 +56,22 @@ bool PatchTrials::operator()(const FlipCandidate& c, bool is_last, FlipPatch& pa
   ++report_.tries;
   list_tets(c);
   std::vector<Tet> before;
-  for (const int t : patch_tets_) before.push_back(mesh_.C[t]);
-  const PatchMeasure old = measured(patch_of(before));
+  std::vector<int> regions;
+  for (const int t : patch_tets_) {
+    before.push_back(mesh_.C[t]);
+    if (mesh_.has_regions()) regions.push_back(mesh_.region[t]);
+  }
+  const PatchMeasure old = measured(patch_of(before, std::move(regions)));
   std::vector<Tet> after = c.new_tets;
+  regions = c.new_regions;
   kept_tets_.clear();
   for (const int t : patch_tets_) {
     if (std::binary_search(c.old_tets.begin(), c.old_tets.end(), t)) continue;
     kept_tets_.push_back(t);
     after.push_back(mesh_.C[t]);
+    if (mesh_.has_regions()) regions.push_back(mesh_.region[t]);
   }
-  patch = patch_of(after);
+  patch = patch_of(after, std::move(regions));
   if (c.operation != Operation::SmoothAll) {
     shape(patch);
     if (!is_last) return is_better(measured(patch), old, is_last);
@@ -117,8 +124,9 @@ bool PatchTrials::is_better(const PatchMeasure& made, const PatchMeasure& old, b
          made.farthest <= std::max(kFaceDistance, old.farthest);
 }
 
-FlipPatch PatchTrials::patch_of(const std::vector<Tet>& tets) {
+FlipPatch PatchTrials::patch_of(const std::vector<Tet>& tets, std::vector<int> region) {
   FlipPatch patch;
+  patch.region = std::move(region);
   patch.C.reserve(tets.size());
   for (const Tet& t : tets) {
     Tet l{};
@@ -256,10 +264,12 @@ PatchMeasure PatchTrials::measured(const FlipPatch& patch) {
   return m;
 }
 
-/// Faces with a vertex that moves and one tet. The patch holds all tets at such a vertex.
+/// Faces with a vertex that moves and one tet, or with two tets of different regions, as faces of the greater region.
+/// The patch holds all tets at such a vertex.
 void PatchTrials::measure_faces(const FlipPatch& patch, PatchMeasure& m) {
   faces_.clear();
-  for (const Tet& t : patch.C) {
+  for (std::size_t k = 0; k < patch.C.size(); ++k) {
+    const Tet& t = patch.C[k];
     for (const auto& f : kTetFace) {
       const Triangle face = {t[f[0]], t[f[1]], t[f[2]]};
       const bool is_candidate =
@@ -269,20 +279,26 @@ void PatchTrials::measure_faces(const FlipPatch& patch, PatchMeasure& m) {
       if (!is_candidate) continue;
       Triangle key = face;
       std::sort(key.begin(), key.end());
-      faces_.emplace_back(key, face);
+      faces_.push_back({key, face, patch.region.empty() ? 0 : patch.region[k]});
     }
   }
-  std::sort(faces_.begin(), faces_.end());
+  std::sort(faces_.begin(), faces_.end(), [](const Face& x, const Face& y) {
+    return std::tie(x.key, x.region, x.face) < std::tie(y.key, y.region, y.face);
+  });
   for (std::size_t k = 0; k < faces_.size(); ++k) {
-    const bool is_twin = (k > 0 && faces_[k - 1].first == faces_[k].first) ||
-                         (k + 1 < faces_.size() && faces_[k + 1].first == faces_[k].first);
-    if (is_twin) continue;
-    const Triangle& f = faces_[k].second;
+    const bool has_next = k + 1 < faces_.size() && faces_[k + 1].key == faces_[k].key;
+    const bool has_former = k > 0 && faces_[k - 1].key == faces_[k].key;
+    if (patch.region.empty() ? has_next || has_former
+                             : has_next || !has_former || faces_[k - 1].region == faces_[k].region)
+      continue;
+    const Triangle& f = faces_[k].face;
     const Vec3 &a = patch.V[f[0]], &b = patch.V[f[1]], &c = patch.V[f[2]];
     const Vec3 normal = (b - a).cross(c - a);
     Vec3 gradient;
     const Vec3 centroid = (a + b + c) / 3;
-    const double value = mesh_.stratified
+    const double value = mesh_.stratified && mesh_.has_regions()
+                             ? mesh_.value_between(faces_[k].region, faces_[k - 1].region, centroid, gradient)
+                         : mesh_.stratified
                              ? mesh_.value_on_patch({patch.vertices[f[0]], patch.vertices[f[1]], patch.vertices[f[2]]},
                                                     centroid, gradient)
                              : psi_.value(centroid, gradient);

@@ -31,7 +31,8 @@ inline double quality_of_cosine(double target, double cosine) {
 struct FlipPatch {
   std::vector<int> vertices;  ///< of the mesh
   std::vector<Vec3> V;
-  std::vector<Tet> C;  ///< local indices; the new tets come first
+  std::vector<Tet> C;       ///< local indices; the new tets come first
+  std::vector<int> region;  ///< per tet; empty: one region
   std::vector<std::uint8_t> moves;
   std::vector<std::vector<Triangle>> ring;  ///< per vertex that moves: its tets are (v, p, q, r)
 };
@@ -65,7 +66,7 @@ class PatchTrials {
   void measure_edges();
   void list_tets(const FlipCandidate& c);
   bool is_better(const PatchMeasure& made, const PatchMeasure& old, bool is_last) const;
-  FlipPatch patch_of(const std::vector<Tet>& tets);
+  FlipPatch patch_of(const std::vector<Tet>& tets, std::vector<int> region);
   void shape(FlipPatch& patch);
   void shape_at_once(FlipPatch& patch, double needed);
   bool solve(FlipPatch& patch, std::size_t v, const OneRing& ring);
@@ -84,7 +85,11 @@ class PatchTrials {
   const ClosestPointParams closest_point_{.method = ClosestPointMethod::Damped};
   const double good_f_;
   std::vector<int> moving_, patch_tets_, kept_tets_;
-  std::vector<std::pair<Triangle, Triangle>> faces_;
+  struct Face {
+    Triangle key, face;
+    int region;
+  };
+  std::vector<Face> faces_;
 };
 
 }  // namespace umtet::detail

@@ -1,0 +1,142 @@
+#include "mesh/regions/detail/region_strata.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace umtet::detail {
+namespace {
+
+constexpr int kMostSteps = 30;        // of Gauss's and Newton's method; it converges in a few
+constexpr double kArrived = 1e-11;    // in h
+constexpr double kFarthest = 2;       // in h, from the vertex
+constexpr double kLeastPivot = 1e-3;  // of unit gradients: below it sheets are parallel
+// Rounds in which a vertex of a curve goes halfway to the middle between its neighbours. Feet of a path that turns on
+// the lattice are otherwise as near as a tenth of an edge, and in places in the wrong order.
+constexpr int kSpreads = 10;
+
+/// The patches of the sheets between these regions, ascending.
+std::vector<int> patches_of(const RegionDomain& domain, RegionSet regions) {
+  std::vector<int> patches;
+  for (RegionSet as = regions; as != 0; as &= as - 1)
+    for (RegionSet bs = as & (as - 1); bs != 0; bs &= bs - 1)
+      patches.push_back(domain.patch(std::countr_zero(as), std::countr_zero(bs)));
+  std::sort(patches.begin(), patches.end());
+  patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+  return patches;
+}
+
+/// The point near x where all patches are 0, in the least-squares sense, or x.
+Vec3 corner_near(const RegionDomain& domain, const std::vector<int>& patches, const Vec3& x, double h) {
+  Vec3 y = x;
+  Eigen::MatrixX3d A(patches.size(), 3);
+  Eigen::VectorXd b(patches.size());
+  for (int step = 0; step < kMostSteps; ++step) {
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+      Vec3 g;
+      const double value = domain.boundary().patch(patches[k], y, &g), norm = g.norm();
+      const auto row = static_cast<Eigen::Index>(k);
+      A.row(row) = g.transpose() / norm;
+      b[row] = value / norm;
+    }
+    if (!A.allFinite() || !b.allFinite()) return x;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> solver;
+    solver.setThreshold(kLeastPivot);
+    solver.compute(A);
+    Vec3 move = solver.solve(b);
+    const double length = move.norm();
+    if (length > h) move *= h / length;
+    y -= move;
+    if ((y - x).norm() > kFarthest * h) return x;
+    if (length <= kArrived * h) break;
+  }
+  return y;
+}
+
+std::vector<Stratum> list_strata(const RegionDomain& domain, const RegionMesh& made, std::vector<int>& of_vertex) {
+  std::vector<Stratum> list;
+  std::map<RegionSet, int> known;  // sheets and curves
+  of_vertex.assign(made.mesh.V.size(), -1);
+  for (std::size_t v = 0; v < made.mesh.V.size(); ++v) {
+    const int n = std::popcount(made.regions_at[v]);
+    if (n < 2) continue;
+    if (const auto at = known.find(made.regions_at[v]); at != known.end()) {
+      of_vertex[v] = at->second;
+      continue;
+    }
+    of_vertex[v] = static_cast<int>(list.size());
+    Stratum s;
+    s.patches = patches_of(domain, made.regions_at[v]);
+    s.dimension = n == 2 ? 2 : n == 3 ? 1 : 0;
+    if (s.dimension == 0) {
+      s.place = corner_near(domain, s.patches, made.mesh.V[v], made.h[v]);
+    } else {
+      known[made.regions_at[v]] = of_vertex[v];
+    }
+    list.push_back(std::move(s));
+  }
+  return list;
+}
+
+/// The two neighbours of each of these vertices on its curve, or at the corner at its end; -1 where there are not two.
+std::vector<std::array<int, 2>> neighbours_on_curves(const RegionMesh& made, const std::vector<int>& on_curve) {
+  std::vector<int> place(made.mesh.V.size(), -1);
+  for (std::size_t k = 0; k < on_curve.size(); ++k) place[on_curve[k]] = static_cast<int>(k);
+  std::vector<std::vector<int>> all(on_curve.size());
+  for (const Tet& t : made.mesh.C)
+    for (const int v : t) {
+      if (place[v] < 0) continue;
+      for (const int w : t)
+        if (w != v && (made.regions_at[w] & made.regions_at[v]) == made.regions_at[v]) all[place[v]].push_back(w);
+    }
+  std::vector<std::array<int, 2>> two;
+  for (std::vector<int>& list : all) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    two.push_back(list.size() == 2 ? std::array{list[0], list[1]} : std::array{-1, -1});
+  }
+  return two;
+}
+
+}  // namespace
+
+RegionStrata::RegionStrata(const RegionDomain& domain, const BackgroundMesh& background, const RegionMesh& made)
+    : strata(domain.boundary(), list_strata(domain, made, of_vertex)) {
+  is_fixed.reserve(made.background_vertex.size());
+  for (const std::int64_t v : made.background_vertex) is_fixed.push_back(background.on_boundary(v) ? 1 : 0);
+}
+
+std::vector<Vec3> RegionStrata::targets(const RegionMesh& made) const {
+  const std::size_t n = of_vertex.size();
+  std::vector<Vec3> target(n, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  std::vector<int> on_curve;
+  for (std::size_t v = 0; v < n; ++v) {
+    if (of_vertex[v] < 0) continue;
+    const Stratum& s = strata[of_vertex[v]];
+    if (s.dimension == 0) target[v] = s.place;
+    Vec3 foot;
+    if (s.dimension == 1 && strata.foot(of_vertex[v], made.mesh.V[v], made.h[v], foot)) {
+      target[v] = foot;
+      on_curve.push_back(static_cast<int>(v));
+    }
+  }
+  const std::vector<std::array<int, 2>> neighbours = neighbours_on_curves(made, on_curve);
+  for (int round = 0; round < kSpreads; ++round) {
+    const std::vector<Vec3> before = target;
+    for (std::size_t k = 0; k < on_curve.size(); ++k) {
+      const auto [a, b] = neighbours[k];
+      if (a < 0 || b < 0 || !before[a].allFinite() || !before[b].allFinite()) continue;
+      const int v = on_curve[k];
+      Vec3 foot;
+      if (strata.foot(of_vertex[v], before[v] / 2 + (before[a] + before[b]) / 4, made.h[v], foot)) target[v] = foot;
+    }
+  }
+  return target;
+}
+
+}  // namespace umtet::detail
