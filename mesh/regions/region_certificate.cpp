@@ -11,6 +11,7 @@
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/surface_measures.h"
 #include "mesh/core/implicit_function.h"
+#include "mesh/core/tet_quality.h"
 
 namespace umtet {
 namespace {
@@ -77,8 +78,11 @@ Triangle outward(const Tet& t, int opposite) {
   return {t[kTetFace[opposite][0]], t[kTetFace[opposite][1]], t[kTetFace[opposite][2]]};
 }
 
-/// The faces between regions, and the piece of each tet: tets of one region that are connected by faces.
-std::vector<Face> interface_faces(const TetMesh& mesh, const std::vector<int>& region, std::vector<int>& piece) {
+/// The faces between regions, the piece of each tet (tets of one region that are connected by faces), and whether each
+/// vertex is on the boundary of the mesh.
+std::vector<Face> interface_faces(const TetMesh& mesh, const std::vector<int>& region, std::vector<int>& piece,
+                                  std::vector<char>& is_on_boundary) {
+  is_on_boundary.assign(mesh.V.size(), 0);
   const bool has_outside = std::find(region.begin(), region.end(), 0) != region.end();
   const std::vector<TetFace> faces = sorted_faces(mesh.C);
   piece.resize(mesh.C.size());
@@ -102,8 +106,9 @@ std::vector<Face> interface_faces(const TetMesh& mesh, const std::vector<int>& r
         between.push_back({outward(mesh.C[greater.tet], greater.opposite), std::max(a, b), std::min(a, b)});
       }
       while (k + 1 < faces.size() && faces[k + 1].key == f.key) ++k;  // counted by certify() as overused
-    } else if (!has_outside) {
-      between.push_back({outward(mesh.C[f.tet], f.opposite), region[f.tet], 0});
+    } else {
+      for (const int v : f.key) is_on_boundary[v] = 1;
+      if (!has_outside) between.push_back({outward(mesh.C[f.tet], f.opposite), region[f.tet], 0});
     }
   }
   for (std::size_t t = 0; t < piece.size(); ++t) piece[t] = root(static_cast<int>(t));
@@ -171,7 +176,12 @@ RegionCertificate certify_regions(const TetMesh& mesh, const std::vector<int>& r
   input.context = context;
   made.whole = certify(input);
   std::vector<int> piece;
-  const std::vector<Face> faces = interface_faces(mesh, region, piece);
+  std::vector<char> is_on_boundary;
+  const std::vector<Face> faces = interface_faces(mesh, region, piece, is_on_boundary);
+  std::vector<double> least(kMostRegions, 1);
+  for (std::size_t t = 0; t < mesh.C.size(); ++t)
+    if (std::none_of(mesh.C[t].begin(), mesh.C[t].end(), [&](int v) { return is_on_boundary[v] != 0; }))
+      least[region[t]] = std::min(least[region[t]], mean_ratio(mesh, mesh.C[t]));
   std::vector<int> present = region, number;
   std::sort(present.begin(), present.end());
   present.erase(std::unique(present.begin(), present.end()), present.end());
@@ -179,6 +189,7 @@ RegionCertificate certify_regions(const TetMesh& mesh, const std::vector<int>& r
     const TetMesh part = part_of(mesh, region, r, number);
     input.mesh = &part;
     RegionMeasures m{.region = r, .certificate = certify(input)};
+    m.min_quality_off_boundary = least[r];
     for (std::size_t t = 0; t < piece.size(); ++t) m.n_pieces += region[t] == r && piece[t] == static_cast<int>(t);
     made.regions.push_back(std::move(m));
   }

@@ -18,6 +18,9 @@ struct RegionMeasures {
   /// region does.
   MeshCertificate certificate;
   int n_pieces = 0;  ///< tets that are connected by faces
+  /// Least mean ratio of its tets without a vertex on the boundary of the mesh, such as the walls of a box; 1 if there
+  /// is none.
+  double min_quality_off_boundary = 1;
 };
 
 /// Measures of the faces between two regions, against their sheet f_ab = 0.

@@ -25,6 +25,7 @@ constexpr const char* kExamples =
   umtet run mask.nii.gz --part 4 -o liver    part 4 of a segmentation; of an image: umtet run ct.nii.gz --level 300: -o bone
   umtet mesh duck --complement --box-walls --box=-2,-1.5,-2,4,2,2 --h .08    the fluid around the duck, in a box
   umtet evolve --implicit '(x-t)^2+y^2+z^2-1' --box=-2,-2,-2,4,2,2 --h .1 --t 0:0.5:2 -o moving
+  umtet regions shell='x^2+y^2+z^2-1' core='x^2+y^2+z^2-.3' --box=-2,-2,-2,2,2,2 -o nested    several bodies in one mesh
   umtet batch LIST -o scans --jobs 2         many scans; one table of verdicts, reasons and times
   umtet inspect duck.ply                     spacing, noise, normals, thickness, likely problems
   umtet check part.msh                       validity and quality of any tet mesh
@@ -115,6 +116,18 @@ CommandParser::CommandParser() {
       {keys::mesh::level_set, keys::mesh::level, keys::mesh::above, keys::mesh::part, keys::mesh::part_smooth,
        keys::mesh::keep_iterates, keys::mesh::order, keys::mesh::effort, keys::output::label_names,
        keys::output::label_min_area, keys::output::patch_angle, keys::output::patch_planar});
+
+  CLI::App& regions =
+      add_command("regions", make_regions,
+                  "Make one mesh of several bodies that share their interfaces, and of what is around them");
+  regions
+      .add_option("BODY", in_.bodies,
+                  "NAME=FORMULA: the body where the formula is negative; later ones cover earlier ones")
+      ->required();
+  regions.add_option("-o", in_.output, "folder for regions.vtu and regions.json");
+  regions.add_flag("--no-outside", in_.no_outside, "mesh the bodies alone, not the rest of the box");
+  for (const ParamField& f : params_fields())
+    if (f.key == keys::mesh::box || f.key == keys::mesh::h || f.key == keys::mesh::tets) add_value(regions, f);
 
   add_batch();
 

@@ -8,6 +8,7 @@
 #include "pipeline/case/progress.h"
 #include "pipeline/cli/batch.h"
 #include "pipeline/run/evolve.h"
+#include "pipeline/run/regions.h"
 #include "pipeline/run/run.h"
 
 namespace umtet {
@@ -26,6 +27,10 @@ struct RunCommand {
 
 struct EvolveCommand {
   EvolveRequest request;  ///< but for its threads
+};
+
+struct RegionsCommand {
+  RegionsRequest request;
 };
 
 struct BatchCommand {
@@ -63,8 +68,8 @@ struct DiffCommand {
   std::filesystem::path case_a, case_b;
 };
 
-using Command = std::variant<TextAnswer, RunCommand, EvolveCommand, BatchCommand, InspectCommand, CheckCommand,
-                             ExportCommand, ReportCommand, ViewCommand, DiffCommand>;
+using Command = std::variant<TextAnswer, RunCommand, EvolveCommand, RegionsCommand, BatchCommand, InspectCommand,
+                             CheckCommand, ExportCommand, ReportCommand, ViewCommand, DiffCommand>;
 
 /// Options of all commands.
 struct CommonOptions {

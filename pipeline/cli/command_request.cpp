@@ -239,6 +239,16 @@ Command make_batch(const CLI::App& app, const CommandInputs& in) {
   return BatchCommand{std::move(request)};
 }
 
+Command make_regions(const CLI::App& app, const CommandInputs& in) {
+  RegionsRequest request;
+  request.parameters = flag_parameters(app, in);
+  for (const std::string& body : in.bodies) request.bodies.push_back(named_formula(body));
+  request.has_outside = !in.no_outside;
+  if (in.output.empty()) throw UsageError("regions: -o FOLDER is missing");
+  request.folder = in.output;
+  return RegionsCommand{std::move(request)};
+}
+
 Command make_inspect(const CLI::App& app, const CommandInputs& in) {
   InspectCommand command{in.input, flag_parameters(app, in)};
   read_parameters(

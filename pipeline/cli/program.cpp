@@ -83,6 +83,7 @@ struct Execution {
   Output operator()(const TextAnswer& command) const { return {ExitCode::Success, command.text, {}}; }
   Output operator()(RunCommand& command) const;
   Output operator()(EvolveCommand& command) const;
+  Output operator()(RegionsCommand& command) const;
   Output operator()(BatchCommand& command) const;
   Output operator()(const InspectCommand& command) const;
   Output operator()(const CheckCommand& command) const;
@@ -160,6 +161,15 @@ Output Execution::operator()(EvolveCommand& command) const {
   return {outcome.code,
           outcome.text + file_list(outcome.files),
           {{"steps", outcome.steps}, {"files", names(outcome.files)}}};
+}
+
+Output Execution::operator()(RegionsCommand& command) const {
+  set_work_at_hand("regions");
+  const RegionsOutcome outcome = mesh_regions(command.request, progress);
+  progress.clear();
+  return {outcome.code,
+          outcome.text + file_list(outcome.files),
+          {{"regions", outcome.document}, {"files", names(outcome.files)}}};
 }
 
 Output Execution::operator()(BatchCommand& command) const {

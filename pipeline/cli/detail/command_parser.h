@@ -13,11 +13,12 @@ namespace umtet {
 /// The values that CLI11 has read, as text; the table of parameters knows their types.
 struct CommandInputs {
   std::string input, output, config, from, until, against, clouds, times, skip, other_case;
-  std::vector<std::string> assignments, formats;
+  std::vector<std::string> assignments, formats, bodies;
   std::map<std::string, std::string> values;  ///< values of parameters by key
   std::map<std::string, bool> switches;       ///< values of switches by key
   int jobs = 1;
-  bool fresh = false, force = false, resume = false, collect = false, no_report = false, quiet = false, verbose = false;
+  bool fresh = false, force = false, resume = false, collect = false, no_report = false, no_outside = false,
+       quiet = false, verbose = false;
 };
 
 /// Makes a command from the values that were read.
@@ -28,6 +29,7 @@ Command make_run(const CLI::App& app, const CommandInputs& in);
 Command make_reconstruct(const CLI::App& app, const CommandInputs& in);
 Command make_mesh(const CLI::App& app, const CommandInputs& in);
 Command make_evolve(const CLI::App& app, const CommandInputs& in);
+Command make_regions(const CLI::App& app, const CommandInputs& in);
 Command make_batch(const CLI::App& app, const CommandInputs& in);
 Command make_inspect(const CLI::App& app, const CommandInputs& in);
 Command make_check(const CLI::App& app, const CommandInputs& in);

@@ -96,6 +96,7 @@ TEST(RegionMesh, WallsOfABoxStayFlat) {
   EXPECT_TRUE(failures(c, 2).empty());
   EXPECT_NEAR(c.whole.volume, box.volume(), 1e-9);
   EXPECT_GE(c.whole.quality.min, .70);
+  EXPECT_GE(measures_of(c, 0).min_quality_off_boundary, .77);
 }
 
 TEST(RegionMesh, NestedBodiesShareNoInterfaceButTheirOwn) {

@@ -1,0 +1,58 @@
+#include "pipeline/reports/region_json.h"
+
+#include "pipeline/case/version.h"
+#include "pipeline/reports/certificate_json.h"
+#include "pipeline/reports/mesh_json.h"
+
+namespace umtet {
+namespace {
+
+const char* name_of(RegionDefect::Kind kind) {
+  switch (kind) {
+    case RegionDefect::Kind::Connectivity:
+      return "connectivity";
+    case RegionDefect::Kind::NotOnStratum:
+      return "off";
+    case RegionDefect::Kind::Lost:
+      return "lost";
+  }
+  return "";
+}
+
+}  // namespace
+
+Json document_of_regions(const RegionCertificate& certificate, const RegionMesh& mesh,
+                         const std::vector<std::string>& names, const std::vector<std::string>& reasons) {
+  Json json = document_head(kVersion);
+  json["verdict"] = reasons.empty() ? "pass" : "fail";
+  json["reasons"] = reasons;
+  json.update(to_json(certificate.whole));
+  json["regions"] = Json::array();
+  for (const RegionMeasures& m : certificate.regions) {
+    Json region = {{"region", m.region}, {"name", names[static_cast<std::size_t>(m.region)]}};
+    region.update(to_json(m.certificate));
+    region["pieces"] = m.n_pieces;
+    region["min_quality_off_boundary"] = m.min_quality_off_boundary;
+    json["regions"].push_back(std::move(region));
+  }
+  json["interfaces"] = Json::array();
+  for (const InterfaceMeasures& m : certificate.interfaces)
+    json["interfaces"].push_back({{"region", names[static_cast<std::size_t>(m.region)]},
+                                  {"other", names[static_cast<std::size_t>(m.other)]},
+                                  {"faces", m.n_faces},
+                                  {"area", m.area},
+                                  {"max_vertex_distance_over_h", m.max_vertex_distance},
+                                  {"max_centroid_distance_over_h", m.max_centroid_distance},
+                                  {"min_cos_normal", m.min_cos_normal},
+                                  {"corners_off", m.n_off},
+                                  {"faces_folded", m.n_folded}});
+  json["defects"] = Json::array();
+  for (const RegionDefect& d : mesh.defects) {
+    Json regions = Json::array();
+    for (const int r : d.regions) regions.push_back(names[static_cast<std::size_t>(r)]);
+    json["defects"].push_back({{"kind", name_of(d.kind)}, {"where", json_of(d.where)}, {"regions", regions}});
+  }
+  return json;
+}
+
+}  // namespace umtet
