@@ -155,6 +155,8 @@ std::vector<Difference> lost_samples(const Domain& domain, const ZeroSetChoice& 
 constexpr double kWorthRepeating = .9;
 constexpr std::size_t kMostRepeated = 10'000'000;
 
+constexpr double kRightAngle = 89;  // degrees: edges of 90 degrees are not acute within the error of their curve
+
 /// What psi = 0 has, and where the mesh differs from it, if it does.
 struct Comparison {
   ZeroSetReport report;
@@ -166,8 +168,19 @@ struct ComparisonParams {
   const PointThickness& thickness;
   const SurfaceDistance* surface;  ///< null: the mesh has no boundary
   const MeshEdge& h;
-  const SizeField* sizes;  ///< of a graded mesh, or null
+  const SizeField* sizes;         ///< of a graded mesh, or null
+  const PiecewiseMesh* features;  ///< the mesh with its sharp edges, or null
 };
+
+/// Whether a curve has an acute edge of the body or of the space around it. Beside such an edge, body or gap are
+/// thinner than any spacing, and a count can be wrong there on the finest grid: the points of a grid in a wedge are
+/// separate pieces where no edge of the grid between them stays inside.
+bool has_acute_edge(const PiecewiseMesh& mesh) {
+  return std::any_of(mesh.graph.curves.begin(), mesh.graph.curves.end(), [](const FeatureCurve& c) {
+    return std::any_of(c.angle_deg.begin(), c.angle_deg.end(),
+                       [](double angle) { return angle < kRightAngle || angle > 360 - kRightAngle; });
+  });
+}
 
 /// Another count, on edges half as long, if it is worth it.
 std::optional<ZeroSetChoice> finer_count(const Domain& domain, const ZeroSetChoice& pieces,
@@ -184,8 +197,8 @@ std::optional<ZeroSetChoice> finer_count(const Domain& domain, const ZeroSetChoi
 
 /// Does the boundary of the mesh look like the pieces of psi = 0 that are kept, and the walls of the box around a
 /// fluid, one closed piece without a hole? Where the two counts differ, the count is repeated on edges half as long, as
-/// far as its size is allowed. A count on a grid coarser than the mesh says nothing against the mesh, and one coarser
-/// than body or gap are thin nothing for it.
+/// far as its size is allowed. A count on a grid coarser than the mesh, or beside acute edges, says nothing against the
+/// mesh, and one coarser than body or gap are thin nothing for it.
 Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
                                  const ComparisonParams& params, const Context& context) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
@@ -222,7 +235,8 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
   MeshDefect defect{.kind = DefectKind::Topology, .n = n};
   if (params.surface) defect = topology_defect(domain, *counted, *params.surface, params.h, n, context);
   const bool is_coarser = counted->share == 0 && counted->topology.spacing > params.h.least();
-  report.topology = is_coarser ? TopologyProof::NotProved : TopologyProof::Differs;
+  const bool is_unsure = is_coarser || (params.features && has_acute_edge(*params.features));
+  report.topology = is_unsure ? TopologyProof::NotProved : TopologyProof::Differs;
   report.topology_at = defect.where;
   if (report.topology == TopologyProof::Differs) made.defect = defect;
   return made;
@@ -364,8 +378,9 @@ Measurement measure(const Domain& domain, const TetMesh& mesh, const UmResult& r
     flips = flips_that_show(result.manifold_flips, psi_points, *surface, h, context);
   }
   const PointThickness everywhere = with_lost_parts(thickness, lost, domain, h, context);
-  Comparison compared = compare_with_domain(domain, mesh, faces, m.mesh, pieces,
-                                            {everywhere, surface ? &*surface : nullptr, h, params.sizes}, context);
+  Comparison compared =
+      compare_with_domain(domain, mesh, faces, m.mesh, pieces,
+                          {everywhere, surface ? &*surface : nullptr, h, params.sizes, params.features}, context);
   m.domain = std::move(compared.report);
   std::vector<Difference> differences = differences_of(m.mesh);
   const auto add = [&](const std::vector<Difference>& more) {
