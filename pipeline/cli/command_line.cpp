@@ -122,10 +122,12 @@ CommandParser::CommandParser() {
                   "Make one mesh of several bodies that share their interfaces, and of what is around them");
   regions
       .add_option("BODY", in_.bodies,
-                  "NAME=FORMULA: the body where the formula is negative; later ones cover earlier ones")
+                  "NAME=FORMULA, the body where the formula is negative, or NAME=FILE of points or triangles; later "
+                  "bodies cover earlier ones")
       ->required();
   regions.add_option("-o", in_.output, "folder for regions.vtu and regions.json");
   regions.add_flag("--no-outside", in_.no_outside, "mesh the bodies alone, not the rest of the box");
+  add_parameter_sources(regions);
   for (const ParamField& f : params_fields())
     if (f.key == keys::mesh::box || f.key == keys::mesh::h || f.key == keys::mesh::tets) add_value(regions, f);
 

@@ -242,7 +242,9 @@ Command make_batch(const CLI::App& app, const CommandInputs& in) {
 Command make_regions(const CLI::App& app, const CommandInputs& in) {
   RegionsRequest request;
   request.parameters = flag_parameters(app, in);
-  for (const std::string& body : in.bodies) request.bodies.push_back(named_formula(body));
+  read_parameters(
+      in, [](Stage) { return true; }, request.parameters);
+  for (const std::string& body : in.bodies) request.bodies.push_back(named_source(body));
   request.has_outside = !in.no_outside;
   if (in.output.empty()) throw UsageError("regions: -o FOLDER is missing");
   request.folder = in.output;

@@ -165,6 +165,7 @@ Output Execution::operator()(EvolveCommand& command) const {
 
 Output Execution::operator()(RegionsCommand& command) const {
   set_work_at_hand("regions");
+  command.request.threads = options.threads;
   const RegionsOutcome outcome = mesh_regions(command.request, progress);
   progress.clear();
   return {outcome.code,

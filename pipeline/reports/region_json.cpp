@@ -21,11 +21,12 @@ const char* name_of(RegionDefect::Kind kind) {
 
 }  // namespace
 
-Json document_of_regions(const RegionCertificate& certificate, const RegionMesh& mesh,
-                         const std::vector<std::string>& names, const std::vector<std::string>& reasons) {
+Json document_of_regions(const RegionBodyMesh& made) {
+  const RegionCertificate& certificate = made.certificate;
+  const std::vector<std::string>& names = made.names;
   Json json = document_head(kVersion);
-  json["verdict"] = reasons.empty() ? "pass" : "fail";
-  json["reasons"] = reasons;
+  json["verdict"] = made.reasons.empty() ? "pass" : "fail";
+  json["reasons"] = made.reasons;
   json.update(to_json(certificate.whole));
   json["regions"] = Json::array();
   for (const RegionMeasures& m : certificate.regions) {
@@ -46,8 +47,15 @@ Json document_of_regions(const RegionCertificate& certificate, const RegionMesh&
                                   {"min_cos_normal", m.min_cos_normal},
                                   {"corners_off", m.n_off},
                                   {"faces_folded", m.n_folded}});
+  json["samples"] = Json::array();
+  for (const MissedBodySamples& m : made.missed)
+    json["samples"].push_back({{"region", names[static_cast<std::size_t>(m.region)]},
+                               {"visible", m.n_visible},
+                               {"missed", m.n_missed},
+                               {"farthest", m.farthest},
+                               {"where", json_of(m.where)}});
   json["defects"] = Json::array();
-  for (const RegionDefect& d : mesh.defects) {
+  for (const RegionDefect& d : made.mesh.defects) {
     Json regions = Json::array();
     for (const int r : d.regions) regions.push_back(names[static_cast<std::size_t>(r)]);
     json["defects"].push_back({{"kind", name_of(d.kind)}, {"where", json_of(d.where)}, {"regions", regions}});

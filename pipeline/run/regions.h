@@ -11,20 +11,21 @@
 
 namespace umtet {
 
-/// A body of `umtet regions`, from NAME=FORMULA.
-struct NamedFormula {
-  std::string name, formula;
+/// A body of `umtet regions`, from NAME=FORMULA or NAME=FILE.
+struct NamedSource {
+  std::string name, source;
 };
 
-/// Splits NAME=FORMULA. \throw UsageError for a missing or unusable name, or a missing formula
-NamedFormula named_formula(const std::string& text);
+/// Splits NAME=SOURCE. \throw UsageError for a missing or unusable name, or a missing source
+NamedSource named_source(const std::string& text);
 
 /// Bodies that become one mesh.
 struct RegionsRequest {
-  std::vector<NamedFormula> bodies;  ///< region k + 1; later ones cover earlier ones
-  bool has_outside = true;           ///< whether the mesh fills the box
+  std::vector<NamedSource> bodies;  ///< region k + 1; later ones cover earlier ones
+  bool has_outside = true;          ///< whether the mesh fills the box
   std::filesystem::path folder;
-  Parameters parameters;  ///< mesh.box, mesh.h and mesh.tets
+  Parameters parameters;  ///< those of stage one for files; mesh.box, mesh.h and mesh.tets
+  int threads = 1;
 };
 
 struct RegionsOutcome {
@@ -37,9 +38,11 @@ struct RegionsOutcome {
 /// Makes one mesh of several bodies that share their interfaces, and writes FOLDER/regions.vtu, with the region of
 /// each tet, and its certificate FOLDER/regions.json.
 ///
+/// The level set of a file is FOLDER/bodies/NAME, a case that later calls reuse; a source that is no file is a formula.
 /// h is mesh.h, or follows from mesh.tets and the volume of the box, or of the bodies if the mesh has no outside.
-/// \throw UsageError without a box, or for names that repeat; ExpressionError; MeshingImpossible if a body reaches the
-///   box or none is in it; std::system_error, Cancelled
+/// \throw UsageError for a formula without a box, or for names that repeat; ExpressionError; MeshingImpossible if a
+/// body
+///   reaches the box or none is in it; the exceptions of run_case() for files; std::system_error, Cancelled
 RegionsOutcome mesh_regions(const RegionsRequest& request, Progress& progress);
 
 }  // namespace umtet

@@ -42,6 +42,23 @@ TEST_F(RegionsProgram, TheOutsideCanBeLeftOut) {
   EXPECT_NEAR(json["n_tets"], 30000, 6000);
 }
 
+TEST_F(RegionsProgram, AScanIsFittedOnceAndJudgedByItsSamples) {
+  const fs::path out = folder / "egg_and_core";
+  const std::string words = "regions egg='" + cloud.string() + "' core='x^2+y^2+z^2-.09' -o " + out.string();
+  const Result r = run(words + " --tets 150000");
+  ASSERT_EQ(r.code, 0) << r.err << r.out;
+  EXPECT_NE(r.out.find("fits the samples"), std::string::npos);
+  const Json json = Json::parse(content(out / "regions.json"));
+  EXPECT_EQ(json["samples"][0]["region"], "egg");
+  EXPECT_EQ(json["samples"][0]["missed"], 0);
+  const double egg = json["regions"][1]["volume"], core = json["regions"][2]["volume"];
+  EXPECT_NEAR(egg + core, 4.18879 * .48, .04 * 4.18879 * .48);
+  const fs::path level_set = out / "bodies/egg/2-level-set/level_set.vti";
+  const auto before = fs::last_write_time(level_set);
+  ASSERT_EQ(run(words + " --tets 100000").code, 0);
+  EXPECT_EQ(fs::last_write_time(level_set), before);
+}
+
 TEST_F(RegionsProgram, BadCallsNameTheRemedy) {
   const std::string out = " -o " + (folder / "bad").string();
   const auto refused = [&](const std::string& words, int code, const std::string& text) {
