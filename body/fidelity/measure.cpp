@@ -156,6 +156,8 @@ constexpr double kWorthRepeating = .9;
 constexpr std::size_t kMostRepeated = 10'000'000;
 
 constexpr double kRightAngle = 89;  // degrees: edges of 90 degrees are not acute within the error of their curve
+// In h: a piece or a handle of psi = 0 that the mesh lacks has points farther from the mesh.
+constexpr double kShown = .5;
 
 /// What psi = 0 has, and where the mesh differs from it, if it does.
 struct Comparison {
@@ -197,8 +199,9 @@ std::optional<ZeroSetChoice> finer_count(const Domain& domain, const ZeroSetChoi
 
 /// Does the boundary of the mesh look like the pieces of psi = 0 that are kept, and the walls of the box around a
 /// fluid, one closed piece without a hole? Where the two counts differ, the count is repeated on edges half as long, as
-/// far as its size is allowed. A count on a grid coarser than the mesh, or beside acute edges, says nothing against the
-/// mesh, and one coarser than body or gap are thin nothing for it.
+/// far as its size is allowed. A count on a grid coarser than the mesh says nothing against the mesh, and one coarser
+/// than body or gap are thin nothing for it. Of a body with acute edges, a count says nothing against a mesh that
+/// passes near every point of psi = 0.
 Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& certificate, const ZeroSetChoice& pieces,
                                  const ComparisonParams& params, const Context& context) {
   const MeshCertificate::Boundary& boundary = certificate.boundary;
@@ -235,7 +238,8 @@ Comparison compare_with_zero_set(const Domain& domain, const MeshCertificate& ce
   MeshDefect defect{.kind = DefectKind::Topology, .n = n};
   if (params.surface) defect = topology_defect(domain, *counted, *params.surface, params.h, n, context);
   const bool is_coarser = counted->share == 0 && counted->topology.spacing > params.h.least();
-  const bool is_unsure = is_coarser || (params.features && has_acute_edge(*params.features));
+  const bool is_wedge = params.features && has_acute_edge(*params.features) && defect.off_over_h < kShown;
+  const bool is_unsure = is_coarser || is_wedge;
   report.topology = is_unsure ? TopologyProof::NotProved : TopologyProof::Differs;
   report.topology_at = defect.where;
   if (report.topology == TopologyProof::Differs) made.defect = defect;

@@ -27,12 +27,11 @@ struct Body {
 
 // Points of a grid in the wedge of this prism are separate pieces of psi < 0.
 TEST_F(Program, AGridThatCannotResolveAWedgeSaysNothingAgainstItsMesh) {
-  const std::string x = "(-.94499276*(x-.029596533)-.25212439*(y-.103874657)-.20837940*(z-.040681072))",
-                    y = "(-.26398630*(x-.029596533)+.21171910*(y-.103874657)+.94100279*(z-.040681072))",
-                    z = "(-.19313186*(x-.029596533)+.94425013*(y-.103874657)-.26663041*(z-.040681072))";
-  const Result r =
-      run("mesh --implicit 'max(max(.8660254*abs(" + y + ")-.5*" + x + "-.4330127," + x + "-.8660254),abs(" + z +
-          ")-1)' --box=-2.22222,-2.22222,-2.22222,2.22222,2.22222,2.22222 --h 0.2222222222222222 -o wedge");
+  const std::string x = "(.748867*(x+.098)-.618961*(y+.025)+.236825*(z+.045))",
+                    y = "(.51323*(x+.098)+.767733*(y+.025)+.383643*(z+.045))",
+                    z = "(-.419278*(x+.098)-.165752*(y+.025)+.892599*(z+.045))";
+  const Result r = run("mesh --implicit 'max(max(.9659258*abs(" + y + ")-.2588190*(" + x + "+.9)," + x + "-.9),abs(" +
+                       z + ")-1)' --box=-2.3,-2.3,-2.3,2.3,2.3,2.3 --h 0.2222 -o wedge");
   ASSERT_EQ(r.code, 0) << r.out << r.err;
   const Json c = Json::parse(content(folder / "wedge/certificate.json"));
   EXPECT_EQ(c["verdict"], "pass");
