@@ -110,6 +110,7 @@ RegionBodyMesh mesh_region_bodies(const std::vector<RegionBody>& bodies, const R
   RegionBodyMesh made;
   made.names = names_of(bodies);
   std::vector<PatchFunction> functions;
+  functions.reserve(bodies.size());
   for (const RegionBody& body : bodies) functions.push_back(body.psi);
   const RegionDomain domain = RegionDomain::of_bodies(std::move(functions));
   Box box = options.box ? *options.box : box_of(bodies);
