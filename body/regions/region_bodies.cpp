@@ -77,7 +77,7 @@ std::vector<std::string> names_of(const std::vector<RegionBody>& bodies) {
   return names;
 }
 
-/// The samples of a body that no later one covers, and those of them that are far from its interfaces.
+/// Counts the samples of a body that no later body covers, and how many of these samples are far from its interfaces.
 MissedBodySamples missed_samples(const std::vector<RegionBody>& bodies, std::size_t k, const RegionMesh& mesh,
                                  double h) {
   MissedBodySamples missed;

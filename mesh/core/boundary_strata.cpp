@@ -32,7 +32,7 @@ double BoundaryStrata::value(int patch, const Vec3& x, Vec3* gradient) const {
   return side * value;
 }
 
-/// Of the patches of a curve, the two whose gradients at x are farthest from parallel. With more than two patches, any
+/// Returns the two patches of a curve whose gradients at x are farthest from parallel. With more than two patches, any
 /// two of them describe the curve.
 std::pair<BoundaryStrata::UnitPatch, BoundaryStrata::UnitPatch> BoundaryStrata::steepest_pair(const Stratum& s,
                                                                                               const Vec3& x) const {

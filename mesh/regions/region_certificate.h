@@ -14,7 +14,7 @@ namespace umtet {
 /// Measures of one region of a mesh. A region without a tet has a certificate without numbers.
 struct RegionMeasures {
   int region = 0;
-  /// Of the tets of the region alone, without psi. Its boundary may touch itself in an edge or a vertex where another
+  /// The certificate of the tets of this region alone, without psi. Its boundary may touch itself in an edge or a vertex where another
   /// region does.
   MeshCertificate certificate;
   int n_pieces = 0;  ///< tets that are connected by faces

@@ -78,7 +78,7 @@ class LocalFlips {
       queue_.emplace(q, tet, version_[tet]);
   }
 
-  /// Of the faces of a tet that lie on the boundary, or between its region and a lesser one.
+  /// The least cosine of the faces of a tet that lie on the boundary, or between its region and a lesser one.
   double least_cosine(int tet) {
     const Tet& t = mesh_.C[tet];
     double least = 1;

@@ -37,7 +37,7 @@ class LabelBand {
   /// Distance of v from the sheet between two regions, in edges, negative in the greater one; far away where one of
   /// them is not near v.
   double distance(int v, int a, int b) const;
-  /// Labels become those of regions shrunk by a distance: a greater region begins this far inside.
+  /// Sets the labels to those of shrunk regions: a greater region begins this distance inside its sheet.
   void shrink(double shift);
 
   std::size_t n_psi_evaluations() const { return n_evaluations_; }
