@@ -14,8 +14,8 @@ namespace umtet {
 /// Measures of one region of a mesh. A region without a tet has a certificate without numbers.
 struct RegionMeasures {
   int region = 0;
-  /// The certificate of the tets of this region alone, without psi. Its boundary may touch itself in an edge or a vertex where another
-  /// region does.
+  /// The certificate of the tets of this region alone, without psi. Its boundary may touch itself in an edge or a
+  /// vertex where another region does.
   MeshCertificate certificate;
   int n_pieces = 0;  ///< tets that are connected by faces
   /// Least mean ratio of its tets without a vertex on the boundary of the mesh, such as the walls of a box; 1 if there
