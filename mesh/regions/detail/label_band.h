@@ -27,6 +27,8 @@ class LabelBand {
 
   std::size_t size() const { return ids_.size(); }
   std::int64_t id(std::size_t v) const { return ids_[v]; }
+  Vec3 position(int v) const { return background_.position(ids_[static_cast<std::size_t>(v)]); }
+  double h(int v) const { return background_.h(ids_[static_cast<std::size_t>(v)]); }
   const LinkTopology& topology(int v) const { return links_.of_type(type_[v]); }
   /// The neighbours of v: their rank, or a code for label_beyond() of one that is not in the band.
   std::span<const int> link(int v) const {
