@@ -123,13 +123,16 @@ CommandParser::CommandParser() {
   regions
       .add_option("BODY", in_.bodies,
                   "NAME=FORMULA, the body where the formula is negative, or NAME=FILE of points or triangles; later "
-                  "bodies cover earlier ones")
+                  "bodies cover earlier ones. Or IMAGE, whose labels are the regions")
       ->required();
   regions.add_option("-o", in_.output, "folder for regions.vtu and regions.json");
+  regions.add_flag("--least", in_.least, "a point belongs to the body whose formula is least, not to the last one");
   regions.add_flag("--no-outside", in_.no_outside, "mesh the bodies alone, not the rest of the box");
   add_parameter_sources(regions);
   for (const ParamField& f : params_fields())
-    if (f.key == keys::mesh::box || f.key == keys::mesh::h || f.key == keys::mesh::tets) add_value(regions, f);
+    if (f.key == keys::mesh::box || f.key == keys::mesh::h || f.key == keys::mesh::tets ||
+        f.key == keys::output::label_names)
+      add_value(regions, f);
 
   add_batch();
 

@@ -244,8 +244,13 @@ Command make_regions(const CLI::App& app, const CommandInputs& in) {
   request.parameters = flag_parameters(app, in);
   read_parameters(
       in, [](Stage) { return true; }, request.parameters);
-  for (const std::string& body : in.bodies) request.bodies.push_back(named_source(body));
+  if (in.bodies.size() == 1 && fs::exists(in.bodies[0])) {
+    request.image = in.bodies[0];
+  } else {
+    for (const std::string& body : in.bodies) request.bodies.push_back(named_source(body));
+  }
   request.has_outside = !in.no_outside;
+  request.overlap = in.least ? Overlap::Least : Overlap::Later;
   if (in.output.empty()) throw UsageError("regions: -o FOLDER is missing");
   request.folder = in.output;
   return RegionsCommand{std::move(request)};

@@ -54,6 +54,16 @@ Json document_of_regions(const RegionBodyMesh& made) {
                                {"missed", m.n_missed},
                                {"farthest", m.farthest},
                                {"where", json_of(m.where)}});
+  json["voxels"] = Json::array();
+  for (const RegionVoxels& r : made.voxels)
+    json["voxels"].push_back({{"region", names[static_cast<std::size_t>(r.region)]},
+                              {"label", r.label},
+                              {"voxels", r.n_voxels},
+                              {"volume_of_voxels", r.volume_of_voxels},
+                              {"volume", r.volume},
+                              {"pieces_by_points", r.pieces.by_points},
+                              {"pieces_by_faces", r.pieces.by_faces},
+                              {"thickness", r.thickness}});
   json["defects"] = Json::array();
   for (const RegionDefect& d : made.mesh.defects) {
     Json regions = Json::array();

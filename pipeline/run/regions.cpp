@@ -7,15 +7,18 @@
 #include <utility>
 
 #include "body/errors.h"
+#include "body/regions/label_regions.h"
 #include "body/regions/region_bodies.h"
 #include "mesh/expression/expression.h"
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/case/label_names.h"
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/reports/region_json.h"
 #include "pipeline/run/run.h"
+#include "reconstruct/io/grid_io.h"
 
 namespace umtet {
 namespace {
@@ -54,6 +57,22 @@ RegionBody body_of_file(const NamedSource& body, const RegionsRequest& request, 
   return made;
 }
 
+/// \throw GridRefused  an image without labels
+RegionBodyMesh mesh_image(const RegionsRequest& request, const RegionBodyOptions& options) {
+  const Grid grid = read_grid(request.image);
+  if (kind_of(grid) != GridKind::Segmentation)
+    throw GridRefused(request.image.string() + ": this is no segmentation: its values are not the numbers of parts");
+  return mesh_label_regions(grid, parse_label_names(request.parameters.output().label_names), options);
+}
+
+RegionBodyMesh mesh_bodies(const RegionsRequest& request, const RegionBodyOptions& options, Progress& progress) {
+  std::vector<RegionBody> bodies;
+  bodies.reserve(request.bodies.size());
+  for (const NamedSource& body : request.bodies)
+    bodies.push_back(fs::exists(body.source) ? body_of_file(body, request, progress) : body_of_formula(body));
+  return mesh_region_bodies(bodies, options, request.overlap);
+}
+
 std::string summary_of(const RegionBodyMesh& made) {
   const RegionCertificate& c = made.certificate;
   std::string text =
@@ -68,8 +87,12 @@ std::string summary_of(const RegionBodyMesh& made) {
   for (const MissedBodySamples& m : made.missed)
     text += fmt::format("samples of {}: {} on its visible part, the farthest {:.2g} h from a vertex\n",
                         made.names[m.region], m.n_visible, m.farthest / made.h);
+  for (const RegionVoxels& r : made.voxels)
+    text += fmt::format("voxels of {}: volume {:.6g}, {:+.2f} % in the mesh\n", made.names[r.region],
+                        r.volume_of_voxels, 100 * (r.volume / r.volume_of_voxels - 1));
   if (made.reasons.empty())
-    return text + fmt::format("verdict: pass (valid, fits psi{})\n", made.missed.empty() ? "" : ", fits the samples");
+    return text + fmt::format("verdict: pass (valid, fits psi{}{})\n", made.missed.empty() ? "" : ", fits the samples",
+                              made.voxels.empty() ? "" : ", fits the voxels");
   text += "verdict: fail\n";
   for (const std::string& reason : made.reasons) text += "  " + reason + "\n";
   return text;
@@ -80,7 +103,8 @@ std::string summary_of(const RegionBodyMesh& made) {
 NamedSource named_source(const std::string& text) {
   const std::size_t at = text.find('=');
   if (at == std::string::npos || at + 1 == text.size())
-    throw UsageError(fmt::format("regions: {}: write NAME=FORMULA or NAME=FILE", text));
+    throw UsageError(
+        fmt::format("regions: {}: write NAME=FORMULA or NAME=FILE, or the path of an image of labels", text));
   NamedSource body{text.substr(0, at), text.substr(at + 1)};
   if (const std::string problem = problem_of_name(body.name); !problem.empty())
     throw UsageError(fmt::format("regions: {}: {}", body.name, problem));
@@ -94,10 +118,8 @@ RegionsOutcome mesh_regions(const RegionsRequest& request, Progress& progress) {
                             .has_outside = request.has_outside,
                             .context = until_interrupted()};
   options.context.progress = [&](const char* step, double fraction) { progress.report("regions", step, fraction); };
-  std::vector<RegionBody> bodies;
-  for (const NamedSource& body : request.bodies)
-    bodies.push_back(fs::exists(body.source) ? body_of_file(body, request, progress) : body_of_formula(body));
-  const RegionBodyMesh made = mesh_region_bodies(bodies, options);
+  const RegionBodyMesh made =
+      request.image.empty() ? mesh_bodies(request, options, progress) : mesh_image(request, options);
 
   RegionsOutcome outcome;
   outcome.document = document_of_regions(made);

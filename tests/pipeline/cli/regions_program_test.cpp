@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,19 @@ namespace {
 using RegionsProgram = Program;
 
 const std::string kBox = " --box=-2,-2,-2,2,2,2";
+
+/// An image of 24^3 voxels with f(i, j, k) around its middle.
+template <class F>
+void write_labels(const fs::path& file, const F& f) {
+  std::ofstream out(file, std::ios::binary);
+  out << "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 24 24 24\nspacings: 1 1 1\nencoding: raw\n\n";
+  for (int k = 0; k < 24; ++k)
+    for (int j = 0; j < 24; ++j)
+      for (int i = 0; i < 24; ++i) out.put(static_cast<char>(f(Vec3(i - 11.5, j - 11.5, k - 11.5))));
+}
+
+/// A ball in two halves.
+int two_halves(const Vec3& x) { return x.norm() > 8 ? 0 : x.dot(Vec3(.3, .1, 1)) < 0 ? 1 : 4; }
 
 TEST_F(RegionsProgram, NestedBodiesAndTheBoxAreOneMesh) {
   const fs::path out = folder / "nested";
@@ -59,6 +74,47 @@ TEST_F(RegionsProgram, AScanIsFittedOnceAndJudgedByItsSamples) {
   EXPECT_EQ(fs::last_write_time(level_set), before);
 }
 
+TEST_F(RegionsProgram, LabelsOfAnImageAreRegions) {
+  write_labels(folder / "ball.nrrd", two_halves);
+  const fs::path out = folder / "ball";
+  const Result r =
+      run("regions " + (folder / "ball.nrrd").string() + " --label-names 4=upper --tets 150000 -o " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err << r.out;
+  EXPECT_NE(r.out.find("fits the voxels"), std::string::npos);
+  const Json json = Json::parse(content(out / "regions.json"));
+  EXPECT_EQ(json["regions"][1]["name"], "label1");
+  EXPECT_EQ(json["regions"][2]["name"], "upper");
+  EXPECT_EQ(json["voxels"][1]["label"], 4);
+  for (const Json& v : json["voxels"])
+    EXPECT_NEAR(v["volume"].get<double>(), v["volume_of_voxels"].get<double>(), .02 * v["volume"].get<double>());
+  EXPECT_EQ(json["interfaces"].size(), 3U);
+  EXPECT_TRUE(json["defects"].empty());
+  EXPECT_GE(json["quality"]["min"], .65);
+}
+
+TEST_F(RegionsProgram, AVoxelThatIsTooSmallForHIsNamed) {
+  write_labels(folder / "speck.nrrd", [](const Vec3& x) {
+    return (x - Vec3(9.5, 9.5, 9.5)).norm() < .6 ? 2 : two_halves(x) == 0 ? 0 : 1;
+  });
+  const fs::path out = folder / "speck";
+  const Result r = run("regions " + (folder / "speck.nrrd").string() + " --h 2 -o " + out.string());
+  EXPECT_EQ(r.code, 6) << r.err << r.out;
+  const Json json = Json::parse(content(out / "regions.json"));
+  EXPECT_EQ(json["verdict"], "fail");
+  EXPECT_NEAR(json["voxels"][0]["volume"], json["voxels"][0]["volume_of_voxels"], 60);
+  EXPECT_FALSE(json["reasons"].empty());
+}
+
+TEST_F(RegionsProgram, AFoamBelongsToTheLeastFunction) {
+  const fs::path out = folder / "bubbles";
+  const Result r =
+      run("regions --least a='(x-.5)^2+y^2+z^2-1' b='(x+.5)^2+y^2+z^2-1'" + kBox + " --tets 150000 -o " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err << r.out;
+  const Json json = Json::parse(content(out / "regions.json"));
+  const double a = json["regions"][1]["volume"], b = json["regions"][2]["volume"];
+  EXPECT_NEAR(a, b, .01 * a);
+}
+
 TEST_F(RegionsProgram, BadCallsNameTheRemedy) {
   const std::string out = " -o " + (folder / "bad").string();
   const auto refused = [&](const std::string& words, int code, const std::string& text) {
@@ -68,6 +124,17 @@ TEST_F(RegionsProgram, BadCallsNameTheRemedy) {
     EXPECT_FALSE(fs::exists(folder / "bad"));
   };
   refused("a" + kBox + out, 2, "NAME=FORMULA");
+  refused("a.nrrd" + out, 2, "image of labels");
+  refused(cloud.string() + out, 3, "egg");
+  write_labels(folder / "empty.nrrd", [](const Vec3&) { return 0; });
+  refused((folder / "empty.nrrd").string() + out, 2, "all voxels are 0");
+  write_labels(folder / "ball.nrrd", two_halves);
+  refused((folder / "ball.nrrd").string() + " --label-names 2=bone" + out, 2, "no voxel has the label 2");
+  write_labels(folder / "many.nrrd", [](const Vec3& x) {  // 216 blocks
+    const Vec3 block = ((x + Vec3::Constant(11.5)) / 4).array().floor();
+    return static_cast<int>(1 + block[0] + 6 * block[1] + 36 * block[2]);
+  });
+  refused((folder / "many.nrrd").string() + out, 2, "at most 63 regions");
   refused("2=x^2-1" + kBox + out, 2, "2");
   refused("a='x^2+y^2+z^2-1' a='x^2+y^2+z^2-1'" + kBox + out, 2, "another region");
   refused("outside='x^2+y^2+z^2-1'" + kBox + out, 2, "another region");
