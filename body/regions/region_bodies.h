@@ -23,10 +23,11 @@ struct RegionBody {
 };
 
 struct RegionBodyOptions {
-  double h = 0;                 ///< edge length, model units; 0: from tets
-  std::int64_t tets = 0;        ///< approximate number of tets; 0: 100,000
-  std::optional<Box> box = {};  ///< what the mesh fills; empty: the known boxes of bodies, and kRoom edges around them
-  bool has_outside = true;      ///< whether the mesh fills the box
+  double h = 0;           ///< edge length, model units; 0: from tets
+  std::int64_t tets = 0;  ///< approximate number of tets; 0: 100,000
+  std::optional<Box> box =
+      {};  ///< the box that the mesh fills; empty: the known boxes of bodies, and kRoom edges around them
+  bool has_outside = true;  ///< whether the mesh fills the box
   Context context = {};
 };
 
@@ -34,8 +35,9 @@ struct RegionBodyOptions {
 struct MissedBodySamples {
   int region = 0;
   std::size_t n_visible = 0;  ///< samples that no later body covers
-  std::size_t n_missed = 0;   ///< of them: farther than h from the nearest interface vertex of the region
-  double farthest = 0;        ///< model units
+  std::size_t n_missed =
+      0;                ///< visible samples that are farther than h from the nearest interface vertex of the region
+  double farthest = 0;  ///< model units
   Vec3 where = Vec3::Zero();  ///< the farthest sample
 };
 
