@@ -24,7 +24,7 @@ struct RegionsRequest {
   std::vector<NamedSource> bodies;  ///< region k + 1; later ones cover earlier ones
   bool has_outside = true;          ///< whether the mesh fills the box
   std::filesystem::path folder;
-  Parameters parameters;  ///< those of stage one for files; mesh.box, mesh.h and mesh.tets
+  Parameters parameters;  ///< parameters of stage one for files; mesh.box, mesh.h and mesh.tets
   int threads = 1;
 };
 
