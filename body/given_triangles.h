@@ -22,7 +22,7 @@ struct GivenTriangles {
   /// triangles, if there are several.
   TriangleMesh whole;
   bool is_whole;      ///< all triangles bound the body: `whole` is a closed manifold
-  SharpEdges edges;   ///< of `whole`
+  SharpEdges edges;   ///< sharp edges of `whole`
   TriangleBody body;  ///< the body that they bound
 };
 

@@ -14,7 +14,7 @@ namespace umtet {
 
 /// A cloud with sharp edges and the functions of its smooth patches.
 struct EdgedCloud {
-  SamplePatches patches;                      ///< of the samples of the cloud
+  SamplePatches patches;                      ///< patches of the samples of the cloud
   std::shared_ptr<const PiecewiseBody> body;  ///< working coordinates; null if the cloud has no sharp edge
   Vec3 shift = Vec3::Zero();                  ///< origin of the working coordinates, model coordinates
 };

@@ -31,7 +31,7 @@ std::set<int> ends_of_missed_curves(const PiecewiseMesh& mesh) {
 
 }  // namespace
 
-FeatureReport feature_report(const PiecewiseDomain& body, const PiecewiseMesh& mesh, double h) {
+FeatureReport feature_report(const PiecewiseDomain& body, const PiecewiseMesh& mesh) {
   const FeatureMeasures m = measure_features(body, mesh);
   FeatureReport report;
   std::set<int> patches(mesh.face_patch.begin(), mesh.face_patch.end());

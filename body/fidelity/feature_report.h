@@ -13,8 +13,7 @@ namespace umtet {
 
 /// The part of a certificate about the sharp edges of a mesh of domain.piecewise.
 /// @param mesh  its vertices and its faces; tets are not used
-/// @param h     edge length
-FeatureReport feature_report(const PiecewiseDomain& body, const PiecewiseMesh& mesh, double h);
+FeatureReport feature_report(const PiecewiseDomain& body, const PiecewiseMesh& mesh);
 
 /// The sharp edges and corners that the mesh does not have: one defect for each curve, with the length of its box, and
 /// for each corner and each place without a curve where patches touch.

@@ -159,12 +159,6 @@ void add_labels(const LabelVolumeReport& r, double explained, std::vector<InputD
 
 const char* to_string(InputDefectKind kind) { return kWords.at(static_cast<std::size_t>(kind)); }
 
-std::optional<InputDefectKind> input_defect_kind_of(const std::string& word) {
-  const auto* found = std::find(kWords.begin(), kWords.end(), word);
-  if (found == kWords.end()) return std::nullopt;
-  return static_cast<InputDefectKind>(found - kWords.begin());
-}
-
 std::vector<InputDefect> input_defects(const MeshMeasures& m) {
   std::vector<InputDefect> defects;
   if (m.triangles) {

@@ -30,7 +30,6 @@ enum class InputDefectKind {
 /// Returns the word that documents and VerdictOptions::accept use: "missed", "guessed", "handles", "pieces",
 /// "distance", "volume", "genus", "voxels", "edges", "noise", "sides".
 const char* to_string(InputDefectKind kind);
-std::optional<InputDefectKind> input_defect_kind_of(const std::string& word);
 
 /// A difference between a mesh and its input.
 struct InputDefect {

@@ -97,12 +97,12 @@ struct TriangleDistances {
 
 /// The sharp edges and corners of a piecewise smooth body, and those of its mesh.
 struct FeatureReport {
-  std::size_t n_patches = 0;                              ///< that have faces in the boundary of the mesh
-  std::size_t n_corners = 0, n_curves = 0;                ///< of the body
-  std::size_t n_missed_corners = 0, n_missed_curves = 0;  ///< that the mesh does not have
-  double length = 0, missed_length = 0;                   ///< of all curves, and of those that the mesh does not have
-  double max_vertex_over_h = 0;  ///< largest distance from a vertex on a curve or a corner to it, in h
-  double max_curve_over_h = 0;   ///< largest distance from a curve to the edges on it, in h
+  std::size_t n_patches = 0;                              ///< patches that have faces in the boundary of the mesh
+  std::size_t n_corners = 0, n_curves = 0;                ///< numbers of corners and curves of the body
+  std::size_t n_missed_corners = 0, n_missed_curves = 0;  ///< numbers of those that the mesh lacks
+  double length = 0, missed_length = 0;  ///< length of all curves, and of the curves that the mesh lacks
+  double max_vertex_over_h = 0;          ///< largest distance from a vertex on a curve or a corner to it, in h
+  double max_curve_over_h = 0;           ///< largest distance from a curve to the edges on it, in h
   /// Greatest difference of the dihedral angle at an edge on a curve between the mesh and the body, degrees.
   double max_angle_off_deg = 0;
   double min_angle_deg = 180;  ///< least dihedral angle of the body at a curve

@@ -28,7 +28,7 @@ struct BoundaryDivision {
   /// The number of a patch is its label if that is positive. Other labels get the numbers after the largest label, and
   /// patches without labels those from 2 on, because the body has the number 1 then.
   std::vector<MeshPart> patches;
-  std::vector<std::string> notices;  ///< what differs from the request: labels without faces, and nothing flat
+  std::vector<std::string> notices;  ///< differences from the request: labels without faces, and no flat part
   /// The edges between the patches of a body with sharp edges, if it is divided into them.
   std::vector<MeshCurve> curves = {};
 };

@@ -19,7 +19,7 @@ namespace umtet {
 struct RegionBodyOptions {
   double h = 0;                 ///< edge length, model units; 0: from tets
   std::int64_t tets = 0;        ///< approximate number of tets; 0: 100,000, and more for the labels of a volume
-  std::optional<Box> box = {};  ///< what the mesh fills; empty: the known boxes of bodies, and kRoom edges around them
+  std::optional<Box> box = {};  ///< the box of the mesh; empty: the known boxes of bodies, and kRoom edges around them
   bool has_outside = true;      ///< whether the mesh fills the box
   Context context = {};
 };
@@ -28,7 +28,7 @@ struct RegionBodyOptions {
 struct MissedBodySamples {
   int region = 0;
   std::size_t n_visible = 0;  ///< samples that no later body covers
-  std::size_t n_missed = 0;   ///< of them: farther than h from the nearest interface vertex of the region
+  std::size_t n_missed = 0;   ///< visible samples farther than h from the nearest interface vertex of the region
   double farthest = 0;        ///< model units
   Vec3 where = Vec3::Zero();  ///< the farthest sample
 };
@@ -37,11 +37,11 @@ struct MissedBodySamples {
 struct RegionVoxels {
   int region = 0;
   double label = 0;             ///< the number of the voxels
-  std::size_t n_voxels = 0;     ///< with this label
+  std::size_t n_voxels = 0;     ///< voxels with this label
   double volume_of_voxels = 0;  ///< model units^3
-  double volume = 0;            ///< of the tets
-  PieceCount pieces;            ///< of the voxels
-  double thickness = 0;         ///< of the thinnest places, model units: PartShape::thickness_p01
+  double volume = 0;            ///< volume of the tets
+  PieceCount pieces;            ///< pieces of the voxels
+  double thickness = 0;         ///< thickness of the thinnest places, model units: PartShape::thickness_p01
 };
 
 /// A mesh of several regions with its verdict.
@@ -61,7 +61,7 @@ struct RegionBodyMesh {
 inline constexpr double kRoom = 4;
 
 /// Makes the mesh of a domain, and certifies it. A box with `has_outside` has flat walls.
-/// @param names   per region
+/// @param names   one name per region
 /// @param bodies  the box around them, if options.box is empty
 /// \throw UsageError         names that repeat
 /// \throw MeshingImpossible  a body reaches the boundary of the box, or none is in it

@@ -22,7 +22,7 @@ PiecewiseMeshParams piecewise_params(const MeshOptions& options);
 /// A mesh of a piecewise smooth body in the form of universal_mesh(), and its curves and patches.
 struct PiecewiseFit {
   UmResult result;
-  std::shared_ptr<PiecewiseMesh> features;  ///< its vertices and faces are those of the result, which has its tets
+  std::shared_ptr<PiecewiseMesh> features;  ///< mesh with the vertices and faces of the result, which contains its tets
 };
 
 /// fit_piecewise_mesh() of the body.

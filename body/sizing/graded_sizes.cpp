@@ -127,14 +127,15 @@ GradedSizes::GradedSizes(BodyOptions options, const Vec3& shift) : options_(std:
 /// The sizes of a body of triangles with sharp edges, which need no psi.
 std::vector<SizeSource> edged_sizes(const Domain& domain, const MeshOptions& p, double edges_across,
                                     const Context& context) {
-  FeatureSizeParams s{.h = p.h > 0 ? p.h : kEdgedMeshEdge * domain.diagonal};
-  if (p.h_max > 0) s.h = std::min(s.h, p.h_max);
-  s.h_min = std::min(s.h, p.h_min > 0 ? p.h_min : kLeastOfEdgedH * s.h);
-  s.edges_across = edges_across;
-  s.deviation =
-      p.max_deviation > 0 ? p.max_deviation / (kSizeTolerance * kSizeTolerance) : kEdgedDeviation * domain.diagonal;
+  double h = p.h > 0 ? p.h : kEdgedMeshEdge * domain.diagonal;
+  if (p.h_max > 0) h = std::min(h, p.h_max);
+  const FeatureSizeParams params{.h = h,
+                                 .h_min = std::min(h, p.h_min > 0 ? p.h_min : kLeastOfEdgedH * h),
+                                 .edges_across = edges_across,
+                                 .deviation = p.max_deviation > 0 ? p.max_deviation / (kSizeTolerance * kSizeTolerance)
+                                                                  : kEdgedDeviation * domain.diagonal};
   const PiecewiseBody& body = *domain.piecewise;
-  return feature_sizes(domain.triangles->whole, domain.triangles->edges, *body.graph, body.curvature, s, context);
+  return feature_sizes(domain.triangles->whole, domain.triangles->edges, *body.graph, body.curvature, params, context);
 }
 
 double least_edged_size(const Domain& domain, const MeshOptions& options, const Context& context) {

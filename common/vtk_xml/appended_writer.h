@@ -33,7 +33,7 @@ inline constexpr const char* kThreeComponents = " NumberOfComponents=\"3\"";
 /// A name in the form that an attribute needs, with XML entities.
 std::string escaped(const std::string& name);
 
-/// The tag <Piece>. @param counted  the attribute with the number of cells
+/// The tag `<Piece>`. @param counted  the attribute with the number of cells
 std::string piece_begin(std::size_t n_points, const std::string& counted, std::size_t n_cells);
 
 /// Layout of a VTK XML file with raw appended data: tags as text, then the arrays, each after its number of bytes as 64

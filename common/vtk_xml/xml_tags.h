@@ -9,7 +9,7 @@
 
 namespace umtet::detail {
 
-/// A tag: <name key="value">, </name> or <name key="value"/>.
+/// A tag: `<name key="value">`, `</name>` or `<name key="value"/>`.
 struct XmlTag {
   std::string name;
   std::vector<std::pair<std::string, std::string>> attributes;

@@ -34,7 +34,7 @@ DistributedMesh some_of(const DistributedMesh& mesh, const std::vector<std::size
 
 /// Data of pieces besides standard data.
 struct PieceExtras {
-  std::vector<MeshPart> patches;  ///< patches of the boundary; empty: those of SolverPart, with numbers from 2
+  std::vector<MeshPart> patches;  ///< patches of the boundary; empty: the patches of SolverPart, with numbers from 2
   int body_number = 1;
   /// Maps numbers of faces in the whole mesh to indices into `patches`. Collective; null if there are no patches.
   std::function<std::vector<int>(const std::vector<std::int64_t>& global_face)> patch_of;

@@ -48,7 +48,7 @@ std::vector<std::string> problems(const ClassificationParams&);
 struct ClassificationReport {
   std::size_t candidates = 0;              ///< vertices whose state may change
   std::size_t shifted = 0;                 ///< states changed by the shift
-  std::size_t returned = 0;                ///< states changed back to those of the former mesh
+  std::size_t returned = 0;                ///< states changed back to the states of the former mesh
   std::size_t flips = 0;                   ///< states changed by the descent
   std::size_t stretched = 0;               ///< vertices near the boundary that kept their state because of most_stretch
   std::size_t thin = 0;                    ///< candidates that kept their state because of least_thickness

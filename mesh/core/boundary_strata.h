@@ -20,7 +20,7 @@ struct Stratum {
   /// An end of a curve, beyond which a vertex must not slide.
   struct End {
     Vec3 place;
-    Vec3 tangent;   ///< of unit length, into the curve
+    Vec3 tangent;   ///< unit vector into the curve
     double within;  ///< distance from the end in which the tangent describes the curve, model units
   };
 
@@ -28,11 +28,12 @@ struct Stratum {
   /// Ascending. More than two on a curve: any two describe it. Empty: the surface psi = 0 as a whole, where no patch is
   /// known.
   std::vector<int> patches;
-  Vec3 place = Vec3::Zero();  ///< of a corner
-  std::vector<End> ends;      ///< of a curve that is not closed
-  /// Of a curve that is known as a polyline: its vertices are on it, and the patches are not evaluated. Null otherwise.
+  Vec3 place = Vec3::Zero();  ///< position of a corner
+  std::vector<End> ends;      ///< ends of a curve that is not closed
+  /// The polyline of a curve that is known as one: its vertices are on it, and the patches are not evaluated. Else
+  /// null.
   std::shared_ptr<const Polyline> course = nullptr;
-  /// Of a patch whose curves are known as polylines: they are its border. No value: the border is not known.
+  /// The border of a patch whose curves are known as polylines. No value: the border is not known.
   std::optional<std::vector<std::shared_ptr<const Polyline>>> border = std::nullopt;
 };
 
@@ -48,7 +49,7 @@ struct BallOnPatch {
   double radius = -1;  ///< model units; 0 where nothing is known, negative where nobody has asked
 };
 
-/// The strata of a boundary, and the moves of vertices on them. Thread-safe as far as the domain is.
+/// The strata of a boundary, and the moves of vertices on them. Thread-safe if the domain is.
 class BoundaryStrata {
  public:
   /// @param domain  must outlive this
@@ -88,7 +89,7 @@ class BoundaryStrata {
   /// The function of a patch, divided by the norm of its gradient.
   struct UnitPatch {
     double value;
-    Vec3 gradient;  ///< of unit length; not finite where there is none
+    Vec3 gradient;  ///< unit vector; not finite where there is none
   };
   std::pair<UnitPatch, UnitPatch> steepest_pair(const Stratum& s, const Vec3& x) const;
 

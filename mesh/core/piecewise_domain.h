@@ -90,7 +90,7 @@ class PiecewiseDomain {
  private:
   struct Node {
     bool is_leaf, is_max;
-    int patch;        ///< of a leaf
+    int patch;        ///< patch of a leaf
     int left, right;  ///< nodes before this one
   };
   PiecewiseDomain() = default;

@@ -19,7 +19,7 @@ class Polyline {
   struct Nearest {
     double distance = 0, arc = 0;
     Vec3 point = Vec3::Zero();
-    Vec3 tangent = Vec3::Zero();  ///< of its segment, of unit length
+    Vec3 tangent = Vec3::Zero();  ///< unit vector along its segment
   };
   /// Cost: linear in the segments near x, and in a sixteenth of the others.
   Nearest nearest(const Vec3& x) const;
@@ -33,7 +33,7 @@ class Polyline {
  private:
   std::vector<Vec3> points_;
   std::vector<double> arc_;
-  std::vector<Eigen::AlignedBox3d> boxes_;  ///< of consecutive segments
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< boxes of consecutive segments
 };
 
 }  // namespace umtet

@@ -18,7 +18,7 @@ Tape parse_formula(const std::string& text, std::optional<double> t = std::nullo
 struct PiecewiseFormula {
   struct Node {
     bool is_leaf = true, is_max = false;
-    int tape = -1;              ///< of a leaf
+    int tape = -1;              ///< tape of a leaf
     int left = -1, right = -1;  ///< earlier nodes, otherwise
   };
   std::vector<Tape> tapes;  ///< no two of them are the same operations

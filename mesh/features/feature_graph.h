@@ -48,7 +48,7 @@ struct FeatureDefect {
     NotOnStratum  ///< a vertex has not arrived on its corner, curve or patch
   };
   Kind kind;
-  int curve = -1, corner = -1;  ///< of the graph, where one is concerned
+  int curve = -1, corner = -1;  ///< curve or corner of the graph, if one is concerned
   Vec3 where = Vec3::Zero();
 };
 const char* to_string(FeatureDefect::Kind);

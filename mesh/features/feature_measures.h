@@ -9,13 +9,13 @@ namespace umtet {
 
 /// How well a mesh has the sharp curves and the corners of its domain.
 struct FeatureMeasures {
-  std::size_t n_corners = 0, n_curves = 0;                ///< of the domain
-  std::size_t n_missed_corners = 0, n_missed_curves = 0;  ///< that the mesh does not have
-  double length = 0, missed_length = 0;                   ///< of curves of the domain, model units
-  double farthest_vertex = 0;                             ///< of a chain or corner from its zero sets, in h
-  double farthest_point = 0;                              ///< of a curve from its chain, in h: the sagitta of edges
+  std::size_t n_corners = 0, n_curves = 0;                ///< numbers of corners and curves of the domain
+  std::size_t n_missed_corners = 0, n_missed_curves = 0;  ///< numbers of those that the mesh lacks
+  double length = 0, missed_length = 0;                   ///< length of curves of the domain, model units
+  double farthest_vertex = 0;  ///< distance of a vertex of a chain or corner from its zero sets, in h
+  double farthest_point = 0;   ///< distance of a curve from its chain, in h: the sagitta of edges
   double worst_angle_deg = 0;  ///< greatest difference of the dihedral angle at an edge of a chain from the domain's
-  double least_cosine = 1;     ///< of a face's normal with the gradient of its own patch at the centroid
+  double least_cosine = 1;     ///< cosine between a face's normal and the gradient of its own patch at the centroid
   std::size_t n_faces_without_patch = 0;
 };
 

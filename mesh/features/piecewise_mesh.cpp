@@ -9,6 +9,7 @@
 
 #include "mesh/classification/configuration_costs.h"
 #include "mesh/core/boundary_strata.h"
+#include "mesh/core/used_vertices.h"
 #include "mesh/fast/fast_mesh.h"
 #include "mesh/submesh/linked_active_layer.h"
 
@@ -144,32 +145,21 @@ void flip(const PiecewiseDomain& domain, ImplicitFunctionRef psi, const Boundary
   const StratifiedVertices vertices{&strata, made.stratum};
   FlippedMesh flipped =
       flip_locally(std::move(made.mesh.V), std::move(made.mesh.C), moves, psi, params, made.flips, context, &vertices);
-  std::vector<int> number(flipped.V.size(), -1);
-  for (const Tet& t : flipped.C)
-    for (const int v : t) number[v] = 0;
-  int n = 0;
-  for (int& v : number)
-    if (v == 0) v = n++;
-  const auto keep = [&](auto& values) {
-    for (std::size_t v = 0; v < number.size(); ++v)
-      if (number[v] >= 0) values[number[v]] = values[v];
-    values.resize(static_cast<std::size_t>(n));
-  };
-  keep(flipped.V);
-  keep(made.background_vertex);
-  keep(made.h);
-  keep(made.stratum);
-  for (Tet& t : flipped.C)
-    for (int& v : t) v = number[v];
+  const UsedVertices used(flipped.C, flipped.V.size());
+  used.keep(flipped.V);
+  used.keep(made.background_vertex);
+  used.keep(made.h);
+  used.keep(made.stratum);
+  for (Tet& t : flipped.C) used.renumber(t);
   for (std::vector<int>& chain : made.chains) {
     const bool is_closed = chain.size() > 1 && chain.front() == chain.back();
     if (is_closed) chain.pop_back();
-    std::erase_if(chain, [&](int v) { return number[v] < 0; });
-    for (int& v : chain) v = number[v];
+    std::erase_if(chain, [&](int v) { return used[v] < 0; });
+    used.renumber(chain);
     if (is_closed && !chain.empty()) chain.push_back(chain.front());
   }
   for (int& v : made.corner_vertex)
-    if (v >= 0) v = number[v];
+    if (v >= 0) v = used[v];
   made.mesh.V = std::move(flipped.V);
   made.mesh.C = std::move(flipped.C);
   made.tet_of_chosen = std::move(flipped.origin);

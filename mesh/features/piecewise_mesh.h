@@ -24,7 +24,7 @@ namespace umtet {
 struct PiecewiseMeshParams {
   SubmeshParams submesh = {};
   ClassificationParams classification = {};
-  int layers = 4;  ///< of vertices behind the boundary that move; >= 1
+  int layers = 4;  ///< layers of vertices behind the boundary that move; >= 1
   StratifiedProjectionParams projection = {};
   SmoothingParams smoothing = {};
   bool flips = true;

@@ -15,11 +15,11 @@ struct StratifiedProjectionParams {
   double least_quality = .2;
   int passes = 3;       ///< rounds in which the vertices go the whole way, in equal parts; >= 1
   int max_rounds = 40;  ///< >= passes
-  int sweeps = 4;       ///< of smoothing after each round; >= 0
+  int sweeps = 4;       ///< sweeps of smoothing after each round; >= 0
   SmoothingParams smoothing = {};
 };
 
-/// What project_onto_strata() did.
+/// Results of project_onto_strata().
 struct StratifiedProjectionReport {
   int rounds = 0;
   std::vector<int> not_arrived;  ///< vertices of the layer, ascending
@@ -29,9 +29,8 @@ struct StratifiedProjectionReport {
 ///
 /// Corners go to their places, vertices of a curve to given points of it, all others to the foot on their patch. A
 /// vertex goes a part of the way if a tet holds it back. Between rounds the others are smoothed, with those that have
-/// arrived on their strata. Those that have not arrived in the end are put there all at once, or one by one; this counts
-/// if smoothing untangles every tet.
-/// \pre layer.strata is set
+/// arrived on their strata. Those that have not arrived in the end are put there all at once, or one by one; this
+/// counts if smoothing untangles every tet. \pre layer.strata is set
 /// @param target  per vertex of the layer: the point to go to, or not finite for the foot on the stratum
 /// \throw Cancelled
 StratifiedProjectionReport project_onto_strata(PNormSmoother& smoother, ImplicitFunctionRef psi,

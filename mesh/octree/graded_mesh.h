@@ -59,8 +59,6 @@ class GradedMesh {
   /// Mean edge length of the smallest tets.
   double finest() const { return finest_; }
   std::size_t n_bytes() const;  ///< memory used
-  /// Number of vertices that smooth_transitions() moved.
-  std::int64_t n_moved() const { return static_cast<std::int64_t>(offsets_.by.size()); }
 
   Vec3 position(std::int64_t vertex) const;
   /// Morton key of the vertex in the root cube.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mesh/classification/configuration_costs.h"
+#include "mesh/core/used_vertices.h"
 #include "mesh/regions/detail/region_strata.h"
 #include "mesh/submesh/active_layer.h"
 
@@ -131,22 +132,11 @@ void flip(const RegionDomain& domain, const detail::RegionStrata& strata, const 
   FlippedMesh flipped =
       flip_locally(std::move(made.mesh.V), std::move(made.mesh.C), moves, ImplicitFunctionRef(domain.boundary()),
                    params, made.flips, context, &vertices, std::move(made.region));
-  std::vector<int> number(flipped.V.size(), -1);
-  for (const Tet& t : flipped.C)
-    for (const int v : t) number[v] = 0;
-  int n = 0;
-  for (int& v : number)
-    if (v == 0) v = n++;
-  const auto keep = [&](auto& values) {
-    for (std::size_t v = 0; v < number.size(); ++v)
-      if (number[v] >= 0) values[number[v]] = values[v];
-    values.resize(static_cast<std::size_t>(n));
-  };
-  keep(flipped.V);
-  keep(made.background_vertex);
-  keep(made.h);
-  for (Tet& t : flipped.C)
-    for (int& v : t) v = number[v];
+  const UsedVertices used(flipped.C, flipped.V.size());
+  used.keep(flipped.V);
+  used.keep(made.background_vertex);
+  used.keep(made.h);
+  for (Tet& t : flipped.C) used.renumber(t);
   std::vector<std::int64_t> background_tet;
   background_tet.reserve(flipped.origin.size());
   for (const std::int64_t t : flipped.origin)

@@ -25,12 +25,6 @@ inline double number_from(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-template <class T>
-std::optional<T> optional_from(const Json& json) {
-  if (json.is_null()) return std::nullopt;
-  return json.get<T>();
-}
-
 inline Eigen::Vector3d vector_from(const Json& json) {
   return {number_from(json.at(0)), number_from(json.at(1)), number_from(json.at(2))};
 }

@@ -8,10 +8,26 @@
 #include <ctime>
 
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/json_fields.h"
 #include "pipeline/case/version.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
+void list_fields(JsonFields& json, RecordedFile& f) {
+  json("file", f.name)("size", f.stamp.size)("xxh3", f.stamp.xxh3);
+}
+
+void list_fields(JsonFields& json, StageRun& run) {
+  json("seconds", run.seconds)("peak_memory_MB", run.peak_memory_MB)("threads", run.threads);
+  json("host", run.host)("date", run.date).if_any("source", run.source);
+}
+
+/// All fields except the version.
+void list_fields(JsonFields& json, StageRecord& r) {
+  json.derived("stage", to_string(r.stage))("parameters", r.parameters);
+  json("inputs", r.inputs)("outputs", r.outputs)("numbers", r.numbers)("run", r.run);
+}
+
 namespace {
 
 // Readers accept this schema only; a stage with a record of another schema is run again.
@@ -19,46 +35,10 @@ constexpr int kSchema = 2;
 
 constexpr const char* kSeal = "checksum";
 
-Json to_json(const std::vector<RecordedFile>& files) {
-  Json list = Json::array();
-  for (const RecordedFile& f : files)
-    list.push_back({{"file", f.name}, {"size", f.stamp.size}, {"xxh3", f.stamp.xxh3}});
-  return list;
-}
-
-std::vector<RecordedFile> files_from(const Json& list) {
-  std::vector<RecordedFile> files;
-  for (const Json& f : list) files.push_back({f.at("file"), {f.at("size"), f.at("xxh3")}});
-  return files;
-}
-
-Json to_json(const StageRun& run) {
-  Json json = {{"seconds", run.seconds},
-               {"peak_memory_MB", run.peak_memory_MB},
-               {"threads", run.threads},
-               {"host", run.host},
-               {"date", run.date}};
-  if (!run.source.empty()) json["source"] = run.source;
-  return json;
-}
-
-StageRun run_from(const Json& json) {
-  return {number_from(json.at("seconds")),
-          number_from(json.at("peak_memory_MB")),
-          json.at("threads"),
-          json.at("host"),
-          json.at("date"),
-          json.value("source", "")};
-}
-
-/// Reads all fields except the version.
 StageRecord record_from(Stage stage, const Json& json) {
-  return {stage,
-          json.at("parameters"),
-          files_from(json.at("inputs")),
-          files_from(json.at("outputs")),
-          json.at("numbers"),
-          run_from(json.at("run"))};
+  auto record = read_fields<StageRecord>(json);
+  record.stage = stage;
+  return record;
 }
 
 /// Returns a clause about the first output that differs from what was written; empty if there is none.
@@ -123,15 +103,8 @@ void write_record(const CasePaths& paths, StageRecord record, const std::vector<
   for (const std::string& name : output_names) files.push_back(paths.folder(record.stage) / name);
   const std::vector<FileStamp> stamps = paths.stamps->of(files);
   for (std::size_t k = 0; k < files.size(); ++k) record.outputs.push_back({output_names[k], stamps[k]});
-  const Json json = {{"schema", kSchema},
-                     {"tool", "umtet"},
-                     {"version", kVersion},
-                     {"stage", to_string(record.stage)},
-                     {"parameters", record.parameters},
-                     {"inputs", to_json(record.inputs)},
-                     {"outputs", to_json(record.outputs)},
-                     {"numbers", record.numbers},
-                     {"run", to_json(record.run)}};
+  Json json = {{"schema", kSchema}, {"tool", "umtet"}, {"version", kVersion}};
+  json.update(json_by_fields(std::move(record)));
   write_text_artefact(paths.record(record.stage), file_text(sealed(json)));
 }
 

@@ -3,13 +3,13 @@
 #include <vector>
 
 #include "body/thin_place.h"
-#include "pipeline/case/json_values.h"
+#include "pipeline/case/json_fields.h"
 
 namespace umtet {
 
-/// Returns a list with one object per thin place.
-/// @param h  the edge length for which the places are too thin
+/// @param h  the edge length for which the place is too thin
+void list_fields(JsonFields& json, ThinPlace& place, double h);
+/// Returns a list with one object per place.
 Json to_json(const std::vector<ThinPlace>& places, double h);
-std::vector<ThinPlace> thin_places_from(const Json& list);
 
 }  // namespace umtet

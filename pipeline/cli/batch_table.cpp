@@ -3,17 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <string_view>
 
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/json_fields.h"
 #include "pipeline/case/version.h"
 #include "pipeline/output/report_page.h"
 #include "pipeline/run/csv_field.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
+
+void list_fields(JsonFields& json, BatchRow& r) {
+  json("scan", r.scan)("case", r.name)("verdict", r.verdict)("exit_code", r.exit_code)("reason", r.reason);
+  json("seconds", r.seconds)("peak_memory_MB", r.peak_memory_MB)("n_tets", r.n_tets);
+  json("min_quality", r.min_quality)("key", r.key);
+}
+
 namespace {
 
 constexpr int kSchema = 1;
@@ -79,35 +88,6 @@ std::string html(const std::vector<BatchRow>& rows) {
   return out + "</tbody></table></body></html>\n";
 }
 
-Json to_json(const BatchRow& r) {
-  return {{"scan", r.scan},
-          {"case", r.name},
-          {"verdict", r.verdict},
-          {"exit_code", r.exit_code},
-          {"reason", r.reason},
-          {"seconds", r.seconds},
-          {"peak_memory_MB", r.peak_memory_MB},
-          {"n_tets", r.n_tets ? Json(*r.n_tets) : Json(nullptr)},
-          {"min_quality", r.min_quality ? Json(*r.min_quality) : Json(nullptr)},
-          {"key", r.key}};
-}
-
-BatchRow row_of(const Json& j) {
-  BatchRow r{j.at("scan"),
-             j.at("case"),
-             j.at("verdict"),
-             j.at("exit_code"),
-             j.at("reason"),
-             j.at("seconds"),
-             j.at("peak_memory_MB"),
-             {},
-             {},
-             j.at("key")};
-  if (!j.at("n_tets").is_null()) r.n_tets = j["n_tets"].get<std::int64_t>();
-  if (!j.at("min_quality").is_null()) r.min_quality = j["min_quality"].get<double>();
-  return r;
-}
-
 std::function<void(const fs::path&)> writer(std::string text) {
   return [text = std::move(text)](const fs::path& file) { write_text_artefact(file, text); };
 }
@@ -115,31 +95,13 @@ std::function<void(const fs::path&)> writer(std::string text) {
 }  // namespace
 
 std::string verdict_of(int exit_code) {
-  switch (static_cast<ExitCode>(exit_code)) {
-    case ExitCode::Success:
-      return "pass";
-    case ExitCode::Usage:
-      return "usage";
-    case ExitCode::InputRefused:
-      return "refused";
-    case ExitCode::ReconstructionFailed:
-      return "no fit";
-    case ExitCode::MeshingImpossible:
-      return "no mesh";
-    case ExitCode::GateFailed:
-      return "fail";
-    case ExitCode::FileTrouble:
-      return "file trouble";
-    case ExitCode::ArtefactCorrupt:
-      return "corrupt";
-    case ExitCode::ResourceLimit:
-      return "limit";
-    case ExitCode::Interrupted:
-    case ExitCode::Terminated:
-      return "stopped";
-    default:
-      return "crash";
-  }
+  // In the order of the codes.
+  constexpr std::array kWords = {"pass",    "crash", "usage",        "refused", "no fit",
+                                 "no mesh", "fail",  "file trouble", "corrupt", "limit"};
+  static_assert(kWords.size() == static_cast<std::size_t>(ExitCode::ResourceLimit) + 1);
+  const auto code = static_cast<ExitCode>(exit_code);
+  if (code == ExitCode::Interrupted || code == ExitCode::Terminated) return "stopped";
+  return exit_code >= 0 && exit_code < static_cast<int>(kWords.size()) ? kWords[exit_code] : "crash";
 }
 
 std::vector<fs::path> batch_files(const fs::path& folder) {
@@ -148,7 +110,7 @@ std::vector<fs::path> batch_files(const fs::path& folder) {
 
 Json batch_rows(const std::vector<BatchRow>& rows) {
   Json list = Json::array();
-  for (const BatchRow& r : rows) list.push_back(to_json(r));
+  for (const BatchRow& r : rows) list.push_back(json_by_fields(r));
   return list;
 }
 
@@ -167,7 +129,7 @@ std::vector<BatchRow> read_batch(const fs::path& folder) {
   try {
     const Json document = Json::parse(read_text(file));
     if (document.at("schema") != kSchema || document.at("version") != kVersion || !seal_holds(document)) return {};
-    for (const Json& row : document.at("rows")) rows.push_back(row_of(row));
+    for (const Json& row : document.at("rows")) rows.push_back(read_fields<BatchRow>(row));
   } catch (const Json::exception&) {
     return {};
   }

@@ -244,7 +244,7 @@ Command make_regions(const CLI::App& app, const CommandInputs& in) {
   request.parameters = flag_parameters(app, in);
   read_parameters(
       in, [](Stage) { return true; }, request.parameters);
-  if (in.bodies.size() == 1 && fs::exists(in.bodies[0])) {
+  if (in.bodies.size() == 1 && is_file(in.bodies[0])) {
     request.image = in.bodies[0];
   } else {
     for (const std::string& body : in.bodies) request.bodies.push_back(named_source(body));

@@ -10,12 +10,12 @@
 #include "body/option_names.h"
 #include "body/sizing/background_choice.h"
 #include "body/sizing/graded_sizes.h"
+#include "mesh/expression/expression.h"
+#include "mesh/io/size_file.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/label_names.h"
 #include "pipeline/case/memory.h"
-#include "pipeline/domain/size_file.h"
-#include "pipeline/domain/viewpoint_file.h"
-#include "mesh/expression/expression.h"
+#include "reconstruct/io/viewpoint_file.h"
 
 namespace umtet {
 namespace fs = std::filesystem;

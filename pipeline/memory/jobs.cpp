@@ -14,8 +14,8 @@
 #include "body/search/mesh_maker.h"
 #include "body/sizing/too_thin.h"
 #include "pipeline/case/memory.h"
+#include "pipeline/case/thin_place_json.h"
 #include "pipeline/domain/body_options.h"
-#include "pipeline/reports/defect_json.h"
 
 namespace umtet {
 namespace {

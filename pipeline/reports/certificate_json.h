@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/case/json_values.h"
+#include "pipeline/case/json_fields.h"
 #include "pipeline/reports/certificate_report.h"
 
 // Certificates and records in JSON. They consist of the blocks of mesh_json.h, comparison_json.h and defect_json.h.
@@ -13,10 +13,8 @@ Json document_head(const std::string& version);
 /// Returns `gates`, `verdict`, `accepted` and `reasons`.
 Json to_json(const Verdict& verdict);
 
-/// Returns the block `measured` of the record of 3-mesh.
-Json to_json(const MeshMeasures& measured);
-/// \throw Json::exception  a value is missing
-MeshMeasures measures_from(const Json& json);
+/// The block `measured` of the record of 3-mesh.
+void list_fields(JsonFields& json, MeshMeasures& measured);
 /// Returns the measurements with a verdict in place of the reasons: the output of `umtet evolve` for a step.
 Json to_json(const MeshMeasures& measured, const Verdict& verdict);
 

@@ -2,39 +2,27 @@
 
 #include <optional>
 
-#include "pipeline/case/json_values.h"
+#include "pipeline/case/json_fields.h"
 #include "pipeline/reports/certificate_report.h"
 
-// Comparison of a mesh with psi = 0, samples, triangles and requested sizes, as JSON. The functions that read throw
-// Json::exception if a value is missing. docs/reference.md explains the names.
+// Comparison of a mesh with psi = 0, samples, triangles and requested sizes. docs/reference.md explains the names.
 namespace umtet {
 
 /// Returns the support. The names are the same with and without samples.
 Json to_json(const std::optional<SupportReport>& support);
 
-/// Returns the block `domain`, including the support.
-Json to_json(const ZeroSetReport& report);
-ZeroSetReport zero_set_from(const Json& json);
-
-/// Returns the block `cloud`.
+/// The block `domain`, including the support.
+void list_fields(JsonFields& json, ZeroSetReport& report);
+/// The block `cloud`.
 /// @param h  edge length of the mesh, here and below
-Json to_json(const SampleDistances& distances, double h);
-SampleDistances distances_from(const Json& json);
-
-/// Returns the block `triangles`.
-Json to_json(const TriangleDistances& distances);
-TriangleDistances triangle_distances_from(const Json& json);
-
-/// Returns the block `features`.
-Json to_json(const FeatureReport& report);
-FeatureReport features_from(const Json& json);
-
-/// Returns the block `resolution`.
-Json to_json(const ResolutionReport& report, double h);
-ResolutionReport resolution_from(const Json& json);
-
-/// Returns the block `sizes`.
-Json to_json(const SizesReport& report);
-SizesReport sizes_from(const Json& json);
+void list_fields(JsonFields& json, SampleDistances& distances, double h);
+/// The block `triangles`.
+void list_fields(JsonFields& json, TriangleDistances& distances);
+/// The block `features`.
+void list_fields(JsonFields& json, FeatureReport& report);
+/// The block `resolution`.
+void list_fields(JsonFields& json, ResolutionReport& report, double h);
+/// The block `sizes`.
+void list_fields(JsonFields& json, SizesReport& report);
 
 }  // namespace umtet

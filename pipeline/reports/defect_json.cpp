@@ -1,6 +1,5 @@
 #include "pipeline/reports/defect_json.h"
 
-#include <stdexcept>
 #include <string>
 
 #include "pipeline/case/exit_code.h"
@@ -8,107 +7,48 @@
 namespace umtet {
 namespace {
 
-Json json_of_defect(const MeshDefect& defect) {
-  return {{"kind", to_string(defect.kind)},
-          {"where", json_of(defect.where)},
-          {"off_over_h", defect.off_over_h},
-          {"size_over_h", defect.size_over_h},
-          {"feature_over_h", json_of(defect.feature_over_h)},
-          {"h_needed", json_of(defect.h_needed)},
-          {"small", is_small(defect)},
-          {"n", defect.n}};
-}
-
-DefectKind kind_from(const Json& json) {
-  const std::string word = json.at("kind");
-  const std::optional<DefectKind> kind = defect_kind_of(word);
-  if (!kind) throw ArtefactDamaged("'" + word + "' is not a kind of defect");
-  return *kind;
-}
-
-MeshDefect defect_from(const Json& json) {
-  return {.kind = kind_from(json),
-          .where = vector_from(json.at("where")),
-          .off_over_h = number_from(json.at("off_over_h")),
-          .size_over_h = number_from(json.at("size_over_h")),
-          .feature_over_h = optional_from<double>(json.at("feature_over_h")),
-          .h_needed = optional_from<double>(json.at("h_needed")),
-          .n = json.at("n")};
+void list_kind(JsonFields& json, DefectKind& kind) {
+  std::string word = to_string(kind);
+  json("kind", word);
+  const std::optional<DefectKind> found = defect_kind_of(word);
+  if (!found) throw ArtefactDamaged("'" + word + "' is not a kind of defect");
+  kind = *found;
 }
 
 }  // namespace
 
-Json to_json(const std::vector<ClosedHole>& holes) {
-  Json list = Json::array();
-  for (const ClosedHole& hole : holes) {
-    list.push_back({{"centre", json_of(hole.centre)},
-                    {"area", hole.area},
-                    {"area_fraction", hole.area_fraction},
-                    {"deepest", hole.deepest},
-                    {"deepest_over_spacing", hole.deepest_over_spacing},
-                    {"rim", {{"n", hole.n_rims}, {"length", hole.rim_length}, {"diameter", hole.rim_diameter}}}});
-  }
-  return list;
+void list_fields(JsonFields& json, MeshDefect& d) {
+  list_kind(json, d.kind);
+  json("where", d.where);
+  json("off_over_h", d.off_over_h);
+  json("size_over_h", d.size_over_h);
+  json("feature_over_h", d.feature_over_h);
+  json("h_needed", d.h_needed);
+  json.derived("small", is_small(d));
+  json("n", d.n);
 }
 
-std::vector<ClosedHole> closed_holes_from(const Json& list) {
-  std::vector<ClosedHole> holes;
-  for (const Json& json : list) {
-    const Json& rim = json.at("rim");
-    holes.push_back({.centre = vector_from(json.at("centre")),
-                     .area = number_from(json.at("area")),
-                     .area_fraction = number_from(json.at("area_fraction")),
-                     .deepest = number_from(json.at("deepest")),
-                     .deepest_over_spacing = number_from(json.at("deepest_over_spacing")),
-                     .rim_length = number_from(rim.at("length")),
-                     .rim_diameter = number_from(rim.at("diameter")),
-                     .n_rims = rim.at("n")});
-  }
-  return holes;
+void list_fields(JsonFields& json, DefectReport::OfKind& k) {
+  list_kind(json, k.kind);
+  json("n", k.n)("n_small", k.n_small)("max_off_over_h", k.max_off_over_h)("worst", k.worst);
 }
 
-Json to_json(const std::vector<MissedPlace>& places) {
-  Json list = Json::array();
-  for (const MissedPlace& p : places) {
-    list.push_back({{"farthest", json_of(p.farthest)}, {"distance", p.distance}, {"n_samples", p.n_samples}});
-  }
-  return list;
+void list_fields(JsonFields& json, DefectReport& report) {
+  json.derived("n", report.n())("kinds", report.kinds)("listed", report.listed);
 }
 
-std::vector<MissedPlace> missed_places_from(const Json& list) {
-  std::vector<MissedPlace> places;
-  for (const Json& json : list) {
-    places.push_back({.farthest = vector_from(json.at("farthest")),
-                       .distance = number_from(json.at("distance")),
-                       .n_samples = json.at("n_samples")});
-  }
-  return places;
+void list_fields(JsonFields& json, ClosedHole& hole) {
+  json("centre", hole.centre);
+  json("area", hole.area);
+  json("area_fraction", hole.area_fraction);
+  json("deepest", hole.deepest);
+  json("deepest_over_spacing", hole.deepest_over_spacing);
+  json.object(
+      "rim", [&](JsonFields& rim) { rim("n", hole.n_rims)("length", hole.rim_length)("diameter", hole.rim_diameter); });
 }
 
-Json to_json(const DefectReport& report) {
-  Json kinds = Json::array(), list = Json::array();
-  for (const DefectReport::OfKind& k : report.kinds) {
-    kinds.push_back({{"kind", to_string(k.kind)},
-                     {"n", k.n},
-                     {"n_small", k.n_small},
-                     {"max_off_over_h", k.max_off_over_h},
-                     {"worst", json_of_defect(k.worst)}});
-  }
-  for (const MeshDefect& defect : report.listed) list.push_back(json_of_defect(defect));
-  return {{"n", report.n()}, {"kinds", std::move(kinds)}, {"listed", std::move(list)}};
-}
-
-DefectReport defects_from(const Json& json) {
-  DefectReport report;
-  for (const Json& k : json.at("kinds")) {
-    report.kinds.push_back({.kind = kind_from(k),
-                            .n = k.at("n"),
-                            .n_small = k.at("n_small"),
-                            .worst = defect_from(k.at("worst")),
-                            .max_off_over_h = number_from(k.at("max_off_over_h"))});
-  }
-  for (const Json& defect : json.at("listed")) report.listed.push_back(defect_from(defect));
-  return report;
+void list_fields(JsonFields& json, MissedPlace& p) {
+  json("farthest", p.farthest)("distance", p.distance)("n_samples", p.n_samples);
 }
 
 }  // namespace umtet

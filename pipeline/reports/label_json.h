@@ -1,12 +1,11 @@
 #pragma once
 
 #include "body/label_report.h"
-#include "pipeline/case/json_values.h"
+#include "pipeline/case/json_fields.h"
 
 namespace umtet {
 
-/// Returns the block `labels`.
-Json to_json(const LabelVolumeReport& report);
-LabelVolumeReport label_volume_from(const Json& json);
+/// The block `labels`.
+void list_fields(JsonFields& json, LabelVolumeReport& report);
 
 }  // namespace umtet

@@ -1,21 +1,18 @@
 #pragma once
 
-#include "pipeline/case/json_values.h"
+#include "pipeline/case/json_fields.h"
 #include "pipeline/reports/certificate_report.h"
 
-// Measurements of a mesh alone, as JSON. The functions that read throw Json::exception if a value is missing.
-// docs/reference.md explains the names.
+// Measurements of a mesh alone. docs/reference.md explains the names.
 namespace umtet {
 
-/// Returns the counts, and the blocks `quality` and `boundary`.
-Json to_json(const MeshCertificate& certificate);
-/// Returns these blocks for a mesh from a file.
+/// The counts, and the blocks `quality` and `boundary`.
 /// @param coordinate_rounding_over_h  largest rounding error of a coordinate in the file, in h
-Json mesh_blocks(const MeshCertificate& certificate, double coordinate_rounding_over_h);
-MeshCertificate mesh_from(const Json& json);
+void list_fields(JsonFields& json, MeshCertificate& certificate, double& coordinate_rounding_over_h);
+/// Returns these blocks.
+Json to_json(const MeshCertificate& certificate);
 
-/// Returns the block `second_order`.
-Json to_json(const SecondOrderReport& report);
-SecondOrderReport second_order_from(const Json& json);
+/// The block `second_order`.
+void list_fields(JsonFields& json, SecondOrderReport& report);
 
 }  // namespace umtet

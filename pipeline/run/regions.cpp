@@ -69,7 +69,7 @@ RegionBodyMesh mesh_bodies(const RegionsRequest& request, const RegionBodyOption
   std::vector<RegionBody> bodies;
   bodies.reserve(request.bodies.size());
   for (const NamedSource& body : request.bodies)
-    bodies.push_back(fs::exists(body.source) ? body_of_file(body, request, progress) : body_of_formula(body));
+    bodies.push_back(is_file(body.source) ? body_of_file(body, request, progress) : body_of_formula(body));
   return mesh_region_bodies(bodies, options, request.overlap);
 }
 
@@ -99,6 +99,11 @@ std::string summary_of(const RegionBodyMesh& made) {
 }
 
 }  // namespace
+
+bool is_file(const std::string& source) {
+  std::error_code ignored;  // a formula may be too long for the name of a file
+  return fs::exists(source, ignored);
+}
 
 NamedSource named_source(const std::string& text) {
   const std::size_t at = text.find('=');

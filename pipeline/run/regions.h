@@ -17,6 +17,9 @@ struct NamedSource {
   std::string name, source;
 };
 
+/// Whether a source is the path of a file that exists; otherwise it is a formula.
+bool is_file(const std::string& source);
+
 /// Splits NAME=SOURCE. \throw UsageError for a missing or unusable name, or a missing source
 NamedSource named_source(const std::string& text);
 
@@ -27,7 +30,7 @@ struct RegionsRequest {
   Overlap overlap = Overlap::Later;
   bool has_outside = true;  ///< whether the mesh fills the box
   std::filesystem::path folder;
-  Parameters parameters;  ///< those of stage one for files; mesh.box, mesh.h, mesh.tets, output.label_names
+  Parameters parameters;  ///< parameters of stage one for files; mesh.box, mesh.h, mesh.tets, output.label_names
   int threads = 1;
 };
 

@@ -10,13 +10,13 @@
 #include "body/edges/edged_body.h"
 #include "body/edges/edged_cloud.h"
 #include "body/scan/level_set_fit.h"
+#include "mesh/io/feature_files.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
-#include "pipeline/meshing/feature_files.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/stages/given_normals.h"
 #include "pipeline/stages/stages.h"
@@ -71,7 +71,8 @@ LevelSetReport write_edges(const StageContext& context, const EdgedTriangles& ed
   const TriangleReport samples = cloud_report(*state.record).triangles->body;
   report.fit.n_points = samples.n_samples;
   report.fit.cloud_spacing = samples.spacing;
-  write_features(context.paths.folder(Stage::LevelSet) / kFeatureFile, curves, edged.shift);
+  write_artefact(context.paths.folder(Stage::LevelSet) / kFeatureFile,
+                 [&](const fs::path& file) { write_features(file, curves, edged.shift); });
   return report;
 }
 
@@ -92,7 +93,7 @@ LevelSetReport write_edges(const StageContext& context, const EdgedCloud& edged,
   report.fit.cloud_spacing = edged.patches.spacing;
   report.noise = edged.patches.noise;
   const fs::path folder = context.paths.folder(Stage::LevelSet);
-  write_features(folder / kFeatureFile, curves, edged.shift);
+  write_artefact(folder / kFeatureFile, [&](const fs::path& file) { write_features(file, curves, edged.shift); });
   std::vector<std::int64_t> patch;
   for (const int p : edged.patches.patch) patch.push_back(p + 1);
   write_artefact(folder / kPatchFile, [&](const fs::path& temporary) {

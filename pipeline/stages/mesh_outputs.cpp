@@ -14,12 +14,12 @@
 #include "body/search/second_order.h"
 #include "common/indices_where.h"
 #include "mesh/certify/quality_report.h"
+#include "mesh/io/feature_files.h"
 #include "mesh/io/mesh_part.h"
 #include "mesh/io/quality_csv.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/defect_files.h"
-#include "pipeline/meshing/feature_files.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/second_order_file.h"
 
@@ -164,7 +164,8 @@ std::vector<std::string> write_mesh_outputs(const StageContext& context, const D
     names.emplace_back("too_thin.vtp");
   }
   if (best.features && !best.features->graph.curves.empty()) {
-    write_features(folder / "features.vtp", *best.features, domain.shift);
+    write_artefact(folder / "features.vtp",
+                   [&](const fs::path& file) { write_features(file, *best.features, domain.shift); });
     names.emplace_back("features.vtp");
   }
   if (!best.defects.empty()) {

@@ -2,10 +2,10 @@
 
 #include <string>
 
+#include "mesh/io/size_file.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/domain/body_options.h"
-#include "pipeline/domain/size_file.h"
 #include "reconstruct/io/grid_io.h"
 
 namespace umtet {

@@ -58,7 +58,6 @@ void load_rows(const Coefficient* row, const Coefficient* next, Pack4d* c) {
 /// Every product is added by fused(): GCC may fuse either product of a b + c d, and psi alone must have the same bits
 /// as psi with its derivatives.
 /// @param base    coefficient (double or float) of the first node of all axes
-/// @param base    coefficient (double or float) of the first node of all axes
 /// @param nx, nxy strides of coefficients along y and z: numbers, or integral constants if they are known
 template <int W, JetOrder order, class Coefficient, class Nx, class Nxy>
 [[gnu::noinline, gnu::noclone]] void contract(const LmeBasis3d& B, const Coefficient* base, Nx nx, Nxy nxy,

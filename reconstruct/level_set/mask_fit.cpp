@@ -1,11 +1,8 @@
 #include "reconstruct/level_set/mask_fit.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
 #include "reconstruct/level_set/least_hessian.h"
@@ -43,8 +40,6 @@ constexpr double kLeastShift = 1e-3;
 constexpr double kBallMargin = .48;
 // Where more is missing, the level is shifted farther at some places than at others.
 constexpr double kMissedVolume = .003;
-// A Gaussian beyond so many standard deviations adds less than a thousandth.
-constexpr double kReach = 3.5;
 
 /// Sums of 3 x 3 x 3 values over 27.
 void box_blur(std::vector<float>& v, const Eigen::Vector3i& n) {
@@ -163,29 +158,6 @@ GridLevelSet interpolated(const BodyVoxels& voxels, const std::vector<float>& va
   return interpolate(std::move(grid));
 }
 
-/// Where values change signs between neighbours along an axis, linear.
-std::vector<Vec3> crossings(const BodyVoxels& voxels, const std::vector<float>& values) {
-  std::vector<Vec3> points;
-  const Eigen::Vector3i& n = voxels.mask.n;
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i < n[0]; ++i) {
-        const float here = values[voxels.mask.index(i, j, k)];
-        for (int axis = 0; axis < 3; ++axis) {
-          Eigen::Vector3i q(i, j, k);
-          if (++q[axis] == n[axis]) continue;
-          const float there = values[voxels.mask.index(q[0], q[1], q[2])];
-          if ((here < 0) == (there < 0)) continue;
-          Vec3 at(i, j, k);
-          at[axis] += here / (here - there);
-          points.push_back(voxels.origin + voxels.axes * at);
-        }
-      }
-    }
-  }
-  return points;
-}
-
 /// psi in units of the smallest step, and the shift of its level.
 class MaskSearch {
  public:
@@ -209,7 +181,7 @@ class MaskSearch {
       ++report.n_changed;
       report.farthest_changed = std::max<double>(report.farthest_changed, unit_ * std::abs(value_[i]));
     }
-    std::vector<Vec3> surface = crossings(voxels_, value_);
+    std::vector<Vec3> surface = sign_changes(voxels_, value_);
     return {std::move(psi), report, std::move(voxels_), std::move(surface)};
   }
 
@@ -340,90 +312,10 @@ GridLevelSet MaskSearch::shifted(MaskReport& report) {
   return psi;
 }
 
-void blur(Grid& grid, double smooth) {
-  const int reach = static_cast<int>(std::ceil(kReach * smooth));
-  std::vector<double> weight;
-  double sum = 0;
-  for (int k = -reach; k <= reach; ++k) {
-    weight.push_back(smooth > 0 ? std::exp(-.5 * k * k / (smooth * smooth)) : 1);
-    sum += weight.back();
-  }
-  for (int axis = 0; axis < 3 && reach > 0; ++axis) {
-    for_each_line(grid.values, grid.n, axis, [&](const VoxelLine<double>& line) {
-      std::vector<double> v(static_cast<std::size_t>(line.n));
-      for (int i = 0; i < line.n; ++i) v[i] = line[i];
-      for (int i = 0; i < line.n; ++i) {
-        double mean = 0;
-        for (int k = -reach; k <= reach; ++k) mean += weight[k + reach] * v[std::clamp(i + k, 0, line.n - 1)];
-        line[i] = mean / sum;
-      }
-    });
-  }
-}
-
 }  // namespace
-
-double BodyVoxels::voxel_volume() const { return std::abs(axes.determinant()); }
-
-BodyVoxels body_voxels(const Grid& grid, std::optional<double> part, int layers) {
-  const auto is_inside = [&](double v) { return part ? v == *part : v != 0; };
-  const auto at = [&](int i, int j, int k) {
-    return grid.values[i + grid.n[0] * (j + static_cast<std::size_t>(grid.n[1]) * k)];
-  };
-  Eigen::AlignedBox3i box;
-  for (int k = 0; k < grid.n[2]; ++k) {
-    for (int j = 0; j < grid.n[1]; ++j) {
-      for (int i = 0; i < grid.n[0]; ++i)
-        if (is_inside(at(i, j, k))) box.extend(Eigen::Vector3i(i, j, k));
-    }
-  }
-  if (box.isEmpty()) throw std::invalid_argument("no voxel is inside");
-  BodyVoxels body;
-  const Eigen::Vector3i first = box.min() - Eigen::Vector3i::Constant(layers);
-  body.mask.n = box.max() - first + Eigen::Vector3i::Constant(layers + 1);
-  body.axes = grid.axes;
-  body.origin = grid.origin + grid.axes * first.cast<double>();
-  body.mask.inside.assign(static_cast<std::size_t>(body.mask.n[0]) * body.mask.n[1] * body.mask.n[2], 0);
-  for (int k = box.min()[2]; k <= box.max()[2]; ++k) {
-    for (int j = box.min()[1]; j <= box.max()[1]; ++j) {
-      for (int i = box.min()[0]; i <= box.max()[0]; ++i)
-        body.mask.inside[body.mask.index(i - first[0], j - first[1], k - first[2])] = is_inside(at(i, j, k)) ? 1 : 0;
-    }
-  }
-  return body;
-}
 
 MaskFit fit_mask(const Grid& grid, std::optional<double> part) {
   return MaskSearch(body_voxels(grid, part, kLayers)).fit();
-}
-
-MaskFit fit_mask_by_kernel(const Grid& image, std::optional<double> part, double smooth) {
-  // Room for the mesh: what touches the wall of the image ends there.
-  BodyVoxels voxels = body_voxels(image, part, 3 + static_cast<int>(std::ceil(kReach * smooth)));
-  const VoxelMask& mask = voxels.mask;
-  MaskReport report;
-  report.n_inside = static_cast<std::size_t>(std::count(mask.inside.begin(), mask.inside.end(), 1));
-  report.volume_of_voxels = static_cast<double>(report.n_inside) * voxels.voxel_volume();
-  Grid grid{mask.n, voxels.origin, voxels.axes, centre_distances(mask, voxels.steps(), 1)};
-  // Of a node on either side half a step less, so that psi = 0 is in the middle between the two sides.
-  const double half = voxels.steps().minCoeff() / 2;
-  const std::vector<double> depth = centre_distances(mask, voxels.steps(), 0);
-  for (std::size_t i = 0; i < mask.size(); ++i)
-    grid.values[i] = mask.inside[i] ? half - depth[i] : grid.values[i] - half;
-  blur(grid, smooth);
-  std::vector<float> values(mask.size());
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    values[i] = static_cast<float>(grid.values[i]);
-    if ((grid.values[i] < 0) == (mask.inside[i] != 0)) continue;
-    ++report.n_changed;
-    report.farthest_changed = std::max(report.farthest_changed, std::abs(grid.values[i]));
-  }
-  std::vector<Vec3> surface = crossings(voxels, values);
-  GridLevelSet psi = interpolate(std::move(grid));
-  const std::vector<std::int32_t> one(mask.size(), 0);
-  const double slack = voxels.steps().maxCoeff();
-  report.volume = volumes_of_pieces(psi.in_nodes(), values, one, 1, slack)[0] * voxels.voxel_volume();
-  return {std::move(psi), report, std::move(voxels), std::move(surface)};
 }
 
 }  // namespace umtet

@@ -10,7 +10,7 @@ namespace umtet {
 
 /// A curve that leaves a corner.
 struct CornerRay {
-  Vec3 direction;              ///< of unit length, away from the corner
+  Vec3 direction;              ///< unit vector away from the corner
   std::array<int, 2> patches;  ///< on its sides, by their numbers at the corner
   bool is_convex;
 };

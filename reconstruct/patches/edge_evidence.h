@@ -15,7 +15,7 @@ struct PatchMisfit {
 /// Measures the misfit by the medians over samples whose neighbours are on their own patch.
 PatchMisfit patch_misfit(const PatchCloud& cloud, const std::vector<int>& labels);
 
-/// What the samples at a border site say about an edge, averaged along the border.
+/// Evidence of an edge from the samples at a border site, averaged along the border.
 ///
 /// Residuals are those of positions, in units of the noise, and of measured normals, in units of their tilt. Their mean
 /// squares are relative to those of the same patches away from their borders.
@@ -34,7 +34,7 @@ struct SiteEvidence {
 std::vector<SiteEvidence> evidence_at(const PatchCloud& cloud, const std::vector<int>& labels,
                                       const std::vector<BorderSite>& sites);
 
-/// What evidence is enough for an edge.
+/// Thresholds of the evidence for an edge.
 struct EdgeThresholds {
   double angle;   ///< least angle, radians
   double share;   ///< least (one - two) / ideal
@@ -44,8 +44,9 @@ struct EdgeThresholds {
   double common;  ///< least share of the sites with such an angle that are accepted
 };
 
-/// Which sites belong to edges: those with enough evidence, in networks that are long enough. None do if few of the
-/// sites with a large angle do: the creases of organic shapes and rounded parts are sharp by chance at some places.
+/// Finds the sites that belong to edges: sites with enough evidence, in networks that are long enough. None do if few
+/// of the sites with a large angle do: the creases of organic shapes and rounded parts are sharp by chance at some
+/// places.
 std::vector<char> accepted_sites(const PatchCloud& cloud, const std::vector<BorderSite>& sites,
                                  const std::vector<SiteEvidence>& evidence, const EdgeThresholds& enough);
 

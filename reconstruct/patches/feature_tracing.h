@@ -22,7 +22,7 @@ struct TracedCurve {
   std::array<int, 2> patches;          ///< a < b
   std::array<int, 2> ends = {-1, -1};  ///< corners at the first and the last point; -1 for a closed curve
   std::vector<Vec3> points;            ///< the first is repeated at the end of a closed curve
-  std::vector<double> angle_deg;       ///< of the body at the points, in (0, 360)
+  std::vector<double> angle_deg;       ///< angle of the body at each point, in (0, 360)
   bool is_convex = true;               ///< the angle is less than 180 degrees
   bool is_closed() const { return ends[0] < 0; }
 };
@@ -41,7 +41,7 @@ struct TracedFeatures {
 ///
 /// Pairs of neighbouring samples of two patches with a sharp border give seeds: Newton's method leads from their middle
 /// to f_a = f_b = 0. From a seed the curve is followed in both directions, in steps that turn by no more than 15
-/// degrees, as far as there are seeds, until it comes back or meets a corner. It is convex if the samples of each of
+/// degrees, while there are seeds, until it comes back or meets a corner. It is convex if the samples of each of
 /// its patches are on the inner side of the other.
 ///
 /// The result does not depend on the number of threads.

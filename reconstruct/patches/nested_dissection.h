@@ -12,8 +12,8 @@ namespace umtet {
 /// A symmetric positive definite system A x = b that is a sum over elements, each with a few of the unknowns.
 struct ElementSystem {
   int n_unknowns = 0;
-  std::vector<Vec3> centres;               ///< of the elements
-  std::vector<std::vector<int>> unknowns;  ///< of each element; every unknown has an element
+  std::vector<Vec3> centres;               ///< centres of the elements
+  std::vector<std::vector<int>> unknowns;  ///< unknowns of each element; every unknown has an element
   /// Adds the matrix (its lower triangle) and the right-hand side of an element. It must be thread-safe.
   std::function<void(int element, Eigen::MatrixXd& A, Eigen::VectorXd& b)> add;
 };

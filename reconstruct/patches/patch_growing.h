@@ -7,7 +7,7 @@
 namespace umtet {
 
 /// Divides samples into regions in which filtered normals vary smoothly. Samples that agree with all neighbours are the
-/// cores of regions. The others join the region whose normals are nearest to theirs.
+/// cores of regions. Every other sample joins the region whose normals are nearest to its own.
 /// @param points   in sample spacings
 /// @param normals  unit, filtered
 /// @return the region of every sample, numbered from 0 in the order of their first samples

@@ -22,7 +22,6 @@ class SplineBand {
   /// @param points  samples; @param H  side of the cells; @param rings  of cells around those with samples
   SplineBand(const std::vector<Vec3>& points, double H, int rings);
 
-  double cell_size() const { return H_; }
   int n_nodes() const { return n_nodes_; }
   int n_cells() const { return static_cast<int>(cells_.size()); }
   /// The functions that are not zero in a cell, the first coordinate fastest.

@@ -19,8 +19,8 @@ struct FeatureLines {
 
 /// A place where lines do not run along the edges of triangles.
 struct LineFault {
-  int point;         ///< of FeatureLines
-  std::string what;  ///< what is wrong with it, with coordinates and distances
+  int point;         ///< index of a point of FeatureLines
+  std::string what;  ///< the fault of this point, with coordinates and distances
 };
 
 /// The edges of triangles along some lines.

@@ -19,10 +19,10 @@ class PatchPrimitive {
 
   Kind kind = Kind::Plane;
   double side = 1;              ///< 1 if f grows away from the centre or axis, -1 for a hole
-  Vec3 point = Vec3::Zero();    ///< of the plane or the axis, the centre, or the apex
-  Vec3 axis = Vec3::Zero();     ///< of unit length: the normal n, or the axis, of a cone from the apex into the cone
+  Vec3 point = Vec3::Zero();    ///< point of the plane or the axis, the centre, or the apex
+  Vec3 axis = Vec3::Zero();     ///< unit vector: the normal n, or the axis, of a cone from the apex into the cone
   double radius = 0;            ///< model units
-  double sine = 0, cosine = 1;  ///< of alpha
+  double sine = 0, cosine = 1;  ///< sine and cosine of alpha
 
   /// f(x). Gradient and Hessian are written to pointers that are not null. At the centre, the axis and beyond the apex
   /// f has no gradient; it is zero there.

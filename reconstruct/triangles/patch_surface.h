@@ -32,7 +32,7 @@ class PatchSurface {
  private:
   TriangleMesh mesh_;
   TriangleTree tree_;
-  std::vector<Vec3> normal_;                            ///< of vertices
+  std::vector<Vec3> normal_;                            ///< normals of vertices
   std::vector<std::array<std::uint8_t, 3>> is_border_;  ///< per triangle: its side from corner k to k + 1
   std::vector<std::uint8_t> is_on_border_;              ///< per vertex
 };

@@ -23,7 +23,7 @@ struct SharpEdgeParams {
 
 /// A chain of sharp edges from corner to corner.
 struct SharpCurve {
-  /// What makes it sharp: the turn of any of its edges, else a line of the mesh, else a border of labels.
+  /// The reason why it is sharp: the turn of any of its edges, else a line of the mesh, else a border of labels.
   enum class Reason { Turn, Line, Border };
   std::vector<int> vertices;  ///< in order; a closed curve repeats the first one at the end
   double length = 0;          ///< model units

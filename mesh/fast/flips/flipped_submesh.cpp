@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/core/used_vertices.h"
+
 namespace umtet {
 namespace {
 
@@ -84,30 +86,17 @@ LocalFlipReport flip_submesh(ImplicitFunctionRef psi, double h, const LocalFlipP
     return report;
   }
   Submesh& now = result.submesh;
-  std::vector<int> number(made.V.size(), -1);
-  for (const Tet& t : made.C)
-    for (const int v : t) number[v] = 0;
-  int n = 0;
-  for (int& v : number)
-    if (v == 0) v = n++;
   result.of_background = std::make_shared<const UmResult>(result);
-  const auto keep = [&](auto& values) {
-    for (std::size_t v = 0; v < number.size(); ++v)
-      if (number[v] >= 0) values[number[v]] = values[v];
-    values.resize(static_cast<std::size_t>(n));
-  };
-  keep(now.mesh.V);
-  keep(now.background_vertex);
-  keep(result.projected);
-  keep(made.V);
+  const UsedVertices used(made.C, made.V.size());
+  used.keep(now.mesh.V);
+  used.keep(now.background_vertex);
+  used.keep(result.projected);
+  used.keep(made.V);
   result.final = std::move(made.V);
-  const auto renumber = [&](auto& ids) {
-    for (int& v : ids) v = number[v];
-  };
-  for (Tet& t : made.C) renumber(t);
-  for (Triangle& f : result.walls) renumber(f);
-  std::erase_if(now.positive_vertices, [&](int v) { return number[v] < 0; });
-  renumber(now.positive_vertices);
+  for (Tet& t : made.C) used.renumber(t);
+  for (Triangle& f : result.walls) used.renumber(f);
+  std::erase_if(now.positive_vertices, [&](int v) { return used[v] < 0; });
+  used.renumber(now.positive_vertices);
   now.mesh.C = std::move(made.C);
   std::vector<std::int64_t> background_tet;
   background_tet.reserve(made.origin.size());

@@ -44,7 +44,6 @@ FormerStates former_states(const BackgroundMesh& background, const VertexLinks& 
 
 /// The vertices of omega_h that keep their positions in the former mesh, ascending: the background around them is the
 /// same, and so are their inside neighbours.
-/// @param before  FormerStates::inside
 /// @param inside  inside vertices of the new mesh
 std::vector<KeptVertex> kept_vertices(const BackgroundMesh& background, const VertexLinks& links,
                                       const FormerMesh& former, const FormerStates& states, const IdSet& inside);

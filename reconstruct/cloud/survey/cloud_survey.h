@@ -96,8 +96,8 @@ inline constexpr double kOpposed = -.3;
 
 /// Distances from evenly picked samples along their inward normals to the first sample that faces the opposite way.
 /// @return ascending, one number per sample for which such a sample was found
-/// @param tree  of the points
 std::vector<double> thicknesses(const OrientedPointCloud& cloud, std::size_t sampled_points = 5000);
+/// @param tree  of the points
 std::vector<double> thicknesses(const OrientedPointCloud& cloud, const NeighbourTree& tree,
                                 std::size_t sampled_points = 5000);
 

@@ -74,7 +74,7 @@ TEST_F(ProgramParameters, FreshDropsParametersAndKeepsResults) {
   EXPECT_TRUE(says(fresh, "case: output.min_quality was 0.99, is 0.0")) << fresh.err;
   EXPECT_EQ(run("run egg").code, 0);  // and stays so
   // A formula and its box are what the case is of.
-  ASSERT_EQ(run(ball + "--seed 5").code, 0);
+  ASSERT_EQ(run(ball + "--set mesh.seed=5").code, 0);
   const std::string box = "case: keeps --box -1.3,-1.3,-1.3,1.3,1.3,1.3";
   EXPECT_TRUE(says(run("mesh ball"), box));  // which --fresh does not drop
   const Result other = run("mesh ball --fresh --tets 2000");

@@ -43,7 +43,7 @@ TEST(TimeSteps, WhatIsNoRangeIsRefused) {
 
 TEST(StepPlot, MarksWhatCouldNotBeMade) {
   const std::string svg = step_plot({{0, true, .8, .9}, {1, false, 0, 0}, {2, true, .7, .8}});
-  EXPECT_EQ(count(svg, "stroke=\"#d62728\""), 1u);
+  EXPECT_EQ(count(svg, "class=\"curve failed\""), 1u);
   EXPECT_EQ(svg.substr(svg.size() - 7), "</svg>\n");
 }
 

@@ -35,7 +35,7 @@ class Incidence {
 
   std::vector<std::size_t> begin_;
   std::vector<int> tets_, list_of_;
-  std::vector<std::vector<int>> lists_;  ///< of the vertices whose tets have changed
+  std::vector<std::vector<int>> lists_;  ///< lists of the vertices whose tets have changed
 };
 
 /// Most tets around an edge that is removed: with nine or more tets, the best triangulation is rarely better than the

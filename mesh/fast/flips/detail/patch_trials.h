@@ -29,7 +29,7 @@ inline double quality_of_cosine(double target, double cosine) {
 
 /// A copy of the tets around an operation, on which the operation is tried.
 struct FlipPatch {
-  std::vector<int> vertices;  ///< of the mesh
+  std::vector<int> vertices;  ///< vertices of the mesh
   std::vector<Vec3> V;
   std::vector<Tet> C;       ///< local indices; the new tets come first
   std::vector<int> region;  ///< per tet; empty: one region
@@ -41,7 +41,7 @@ struct FlipPatch {
 struct PatchMeasure {
   double sum = 0, least = 1;
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;  ///< edges, relative
-  double least_cosine = 1, farthest = 0;                                   ///< of boundary faces; in edges
+  double least_cosine = 1, farthest = 0;  ///< least cosine of boundary faces; largest distance in edges
 };
 
 /// Tries operations on patches of a mesh.

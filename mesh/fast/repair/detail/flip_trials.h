@@ -44,7 +44,7 @@ class Positions {
   std::vector<Vec3> moved_to_;
 };
 
-/// Which trials are made for one tet.
+/// The trials that are made for one tet.
 struct FlipEffort {
   /// smooth_all_vertices() is applied to patches without misaligned faces that smoothing leaves below the target, at
   /// first without flips.

@@ -21,7 +21,7 @@ struct TextTable {
   TextDialect dialect;
   std::size_t begin = 0;                   ///< position of the first row in the file
   std::size_t first_line = 1;              ///< line number of the first row, from 1
-  std::size_t n_columns = 0;               ///< of each row
+  std::size_t n_columns = 0;               ///< columns of each row
   std::optional<std::uint64_t> announced;  ///< the number of points, if a line before the rows contains it
   std::vector<std::string> header;         ///< column_name() of each column, including x, y and z; or empty
   std::size_t n_ignored = 0;               ///< lines of words before the rows that are not such a header

@@ -166,7 +166,8 @@ void check_obj_head(const CloudSource& head) {
 FeatureLinesFile read_obj_lines(const CloudSource& source) {
   ObjReader obj(source, true);
   obj.read();
-  FeatureLinesFile made{.format = "obj"};
+  FeatureLinesFile made;
+  made.format = "obj";
   std::vector<int> number(obj.soup.V.size(), -1);
   const auto point = [&](std::int64_t v, std::size_t line) {
     if (v >= static_cast<std::int64_t>(number.size()))

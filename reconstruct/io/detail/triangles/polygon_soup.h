@@ -32,9 +32,9 @@ class NameTable {
 /// Polygons collected by a reader.
 struct PolygonSoup {
   std::vector<Vec3> V;
-  std::vector<std::int64_t> corners;  ///< of all polygons, from 0
+  std::vector<std::int64_t> corners;  ///< corners of all polygons, from 0
   std::vector<std::size_t> ends;      ///< end of each polygon in `corners`
-  std::vector<int> labels;            ///< of each polygon; or empty
+  std::vector<int> labels;            ///< label of each polygon; or empty
   /// Pairs of indices into V. Those that are sides of triangles become lines of the mesh.
   std::vector<std::array<int, 2>> lines = {};
 

@@ -1,6 +1,6 @@
 // Files of sizes: what is read, and what is refused with its place.
 
-#include "pipeline/domain/size_file.h"
+#include "mesh/io/size_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,11 +1,10 @@
-#include "pipeline/meshing/feature_files.h"
+#include "mesh/io/feature_files.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "mesh/io/polylines.h"
-#include "pipeline/case/artefact.h"
 
 namespace umtet {
 
@@ -33,11 +32,9 @@ void write_features(const std::filesystem::path& file, const PiecewiseMesh& mesh
     patch_2.push_back(of_body.patches[1] + 1);
     angle.push_back(*std::min_element(of_body.angle_deg.begin(), of_body.angle_deg.end()));
   }
-  write_artefact(file, [&](const std::filesystem::path& temporary) {
-    write_polylines(
-        temporary, points, lines, {{"vertex", vertex}},
-        {{"curve", curve}, {"patch_1", patch_1}, {"patch_2", patch_2}, {"angle_deg", angle}, {"in_mesh", in_mesh}});
-  });
+  write_polylines(
+      file, points, lines, {{"vertex", vertex}},
+      {{"curve", curve}, {"patch_1", patch_1}, {"patch_2", patch_2}, {"angle_deg", angle}, {"in_mesh", in_mesh}});
 }
 
 }  // namespace umtet

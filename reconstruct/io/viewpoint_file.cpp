@@ -1,4 +1,4 @@
-#include "pipeline/domain/viewpoint_file.h"
+#include "reconstruct/io/viewpoint_file.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 
 namespace umtet {
 
-/// Writes the sharp edges of a mesh as lines, atomically: one line for each curve with `curve` (its number), `patch_1`,
+/// Writes the sharp edges of a mesh as lines in VTK XML polydata: one line for each curve with `curve` (its number), `patch_1`,
 /// `patch_2` (numbers from 1), `angle_deg` (least dihedral angle of the body) and `in_mesh` (0: the mesh lacks it, and
 /// the line is the curve of the body). Points have `vertex`, the vertex of mesh.vtu, -1 for none.
 /// @param shift  from working to model coordinates

@@ -1,4 +1,4 @@
-#include "pipeline/domain/size_file.h"
+#include "mesh/io/size_file.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "mesh/io/tet_mesh_io.h"
-#include "pipeline/case/artefact.h"
 
 namespace umtet {
 namespace fs = std::filesystem;
