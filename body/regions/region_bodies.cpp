@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <nanoflann.hpp>
 #include <set>
@@ -71,7 +72,9 @@ std::vector<std::string> names_of(const std::vector<RegionBody>& bodies) {
   std::vector<std::string> names = {"outside"};
   std::set<std::string> known = {"outside"};
   for (const RegionBody& body : bodies) {
-    if (!known.insert(body.name).second) throw UsageError("regions: " + body.name + " is the name of another region");
+    std::string lower = body.name;  // Abaqus does not distinguish case
+    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (!known.insert(lower).second) throw UsageError("regions: " + body.name + " is the name of another region");
     names.push_back(body.name);
   }
   return names;

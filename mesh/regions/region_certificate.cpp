@@ -115,6 +115,32 @@ std::vector<Face> interface_faces(const TetMesh& mesh, const std::vector<int>& r
   return between;
 }
 
+/// The boundary faces with the corners of another one.
+std::size_t unshared_faces(const TetMesh& mesh) {
+  std::vector<Triangle> faces = boundary_faces(mesh.C, mesh.V.size()).triangles;
+  std::vector<int> vertices;
+  for (const Triangle& f : faces) vertices.insert(vertices.end(), f.begin(), f.end());
+  const auto before = [&](int a, int b) {
+    const Vec3 &x = mesh.V[a], &y = mesh.V[b];
+    return std::lexicographical_compare(x.data(), x.data() + 3, y.data(), y.data() + 3);
+  };
+  std::sort(vertices.begin(), vertices.end(), [&](int a, int b) { return before(a, b) || (!before(b, a) && a < b); });
+  std::vector<int> first_at(mesh.V.size(), -1);  // the first vertex at the position of each
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const bool is_same = k > 0 && !before(vertices[k - 1], vertices[k]);
+    first_at[vertices[k]] = is_same ? first_at[vertices[k - 1]] : vertices[k];
+  }
+  for (Triangle& f : faces) {
+    for (int& v : f) v = first_at[v];
+    std::sort(f.begin(), f.end());
+  }
+  std::sort(faces.begin(), faces.end());
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    n += (k > 0 && faces[k] == faces[k - 1]) || (k + 1 < faces.size() && faces[k] == faces[k + 1]) ? 1 : 0;
+  return n;
+}
+
 void measure_faces(const TetMesh& mesh, const std::vector<Face>& faces, const RegionDomain* domain, double h,
                    const Context& context, std::vector<InterfaceMeasures>& interfaces) {
   struct OfFace {
@@ -167,8 +193,9 @@ std::string name_of(const InterfaceMeasures& m) {
 RegionCertificate certify_regions(const TetMesh& mesh, const std::vector<int>& region, const RegionDomain* domain,
                                   double h, const Context& context) {
   if (region.size() != mesh.C.size()) throw std::invalid_argument("one region for each tet");
-  if (std::any_of(region.begin(), region.end(), [](int r) { return r < 0 || r >= kMostRegions; }))
-    throw std::invalid_argument("regions are numbers from 0 to " + std::to_string(kMostRegions - 1));
+  if (std::any_of(region.begin(), region.end(), [&](int r) { return r < 0 || (domain && r >= kMostRegions); }))
+    throw std::invalid_argument("regions are numbers from 0, and to " + std::to_string(kMostRegions - 1) +
+                                " with a domain");
   RegionCertificate made;
   CertificateInput input;
   input.mesh = &mesh;
@@ -178,7 +205,9 @@ RegionCertificate certify_regions(const TetMesh& mesh, const std::vector<int>& r
   std::vector<int> piece;
   std::vector<char> is_on_boundary;
   const std::vector<Face> faces = interface_faces(mesh, region, piece, is_on_boundary);
-  std::vector<double> least(kMostRegions, 1);
+  std::vector<double> least;  // by region
+  for (const int r : region)
+    if (static_cast<std::size_t>(r) >= least.size()) least.resize(static_cast<std::size_t>(r) + 1, 1);
   for (std::size_t t = 0; t < mesh.C.size(); ++t)
     if (std::none_of(mesh.C[t].begin(), mesh.C[t].end(), [&](int v) { return is_on_boundary[v] != 0; }))
       least[region[t]] = std::min(least[region[t]], mean_ratio(mesh, mesh.C[t]));
@@ -194,6 +223,7 @@ RegionCertificate certify_regions(const TetMesh& mesh, const std::vector<int>& r
     made.regions.push_back(std::move(m));
   }
   measure_faces(mesh, faces, domain, made.whole.h, context, made.interfaces);
+  made.n_unshared_faces = unshared_faces(mesh);
   return made;
 }
 
@@ -204,6 +234,10 @@ std::vector<std::string> failures(const RegionCertificate& certificate, int n_re
                                       [&](const RegionMeasures& m) { return m.region == r; });
     if (!is_there) list.push_back("region " + std::to_string(r) + " has no tet");
   }
+  if (certificate.n_unshared_faces > 0)
+    list.push_back(std::to_string(certificate.n_unshared_faces) +
+                   " boundary faces lie on another one without sharing its vertices: regions touch, but are not "
+                   "connected");
   for (const InterfaceMeasures& m : certificate.interfaces) {
     if (m.n_off > 0)
       list.push_back(std::to_string(m.n_off) + " corners of faces " + name_of(m) + " are off their sheet");

@@ -40,13 +40,16 @@ struct RegionCertificate {
   MeshCertificate whole;  ///< all tets, without psi: if they are embedded, no two tets of any region overlap
   std::vector<RegionMeasures> regions;        ///< ascending, region 0 included where it has tets
   std::vector<InterfaceMeasures> interfaces;  ///< ascending by region and other; without a domain only n_faces and area
+  /// Boundary faces of the mesh that lie on another one with the same corners, but other vertices: two regions touch
+  /// there, and are not connected.
+  std::size_t n_unshared_faces = 0;
 };
 
 /// Certifies a mesh of several regions, however it was made.
 ///
 /// Each face between two regions belongs to one tet on either side, because no face of `whole` has more than two tets.
 /// Without tets of region 0, the boundary faces of the mesh are interfaces of region 0.
-/// @param region  per tet, in 0 .. kMostRegions - 1
+/// @param region  per tet, >= 0; with a domain less than kMostRegions
 /// @param domain  null: the interfaces are not compared with sheets
 /// @param h       edge length of the ratios; <= 0: as in CertificateInput
 /// \throw std::invalid_argument as certify(), or if there is not one region per tet; Cancelled

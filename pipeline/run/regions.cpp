@@ -14,7 +14,9 @@
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/domain/load_domain.h"
+#include "pipeline/output/export_case.h"
 #include "pipeline/reports/region_json.h"
+#include "pipeline/reports/region_lines.h"
 #include "pipeline/run/run.h"
 
 namespace umtet {
@@ -55,16 +57,7 @@ RegionBody body_of_file(const NamedSource& body, const RegionsRequest& request, 
 }
 
 std::string summary_of(const RegionBodyMesh& made) {
-  const RegionCertificate& c = made.certificate;
-  std::string text =
-      fmt::format("{:<16} {:>10} {:>8} {:>8} {:>14} {:>7}\n", "region", "tets", "least Q", "1 % Q", "volume", "pieces");
-  for (const RegionMeasures& m : c.regions)
-    text += fmt::format("{:<16} {:>10} {:>8.3f} {:>8.3f} {:>14.6g} {:>7}\n", made.names[m.region], m.certificate.n_tets,
-                        m.certificate.quality.min, m.certificate.quality.p01, m.certificate.volume, m.n_pieces);
-  for (const InterfaceMeasures& m : c.interfaces)
-    text += fmt::format("interface {}|{}: {} faces, vertices within {:.1g} h, face centres within {:.2g} h\n",
-                        made.names[m.region], made.names[m.other], m.n_faces, m.max_vertex_distance,
-                        m.max_centroid_distance);
+  std::string text = region_lines(made.certificate, made.names, true);
   for (const MissedBodySamples& m : made.missed)
     text += fmt::format("samples of {}: {} on its visible part, the farthest {:.2g} h from a vertex\n",
                         made.names[m.region], m.n_visible, m.farthest / made.h);
@@ -82,7 +75,7 @@ NamedSource named_source(const std::string& text) {
   if (at == std::string::npos || at + 1 == text.size())
     throw UsageError(fmt::format("regions: {}: write NAME=FORMULA or NAME=FILE", text));
   NamedSource body{text.substr(0, at), text.substr(at + 1)};
-  if (const std::string problem = problem_of_name(body.name); !problem.empty())
+  if (const std::string problem = problem_of_region_name(body.name); !problem.empty())
     throw UsageError(fmt::format("regions: {}: {}", body.name, problem));
   return body;
 }
@@ -105,8 +98,10 @@ RegionsOutcome mesh_regions(const RegionsRequest& request, Progress& progress) {
   outcome.code = made.reasons.empty() ? ExitCode::Success : ExitCode::GateFailed;
   MeshFile file = with_standard_data(made.mesh.mesh, made.mesh.background_vertex, made.mesh.background_tet);
   file.cell_data["region"] = std::vector<std::int64_t>(made.mesh.region.begin(), made.mesh.region.end());
+  for (std::size_t r = 0; r < made.names.size(); ++r) file.region_names[static_cast<std::int64_t>(r)] = made.names[r];
   fs::create_directories(request.folder);
   outcome.files = {request.folder / "regions.vtu", request.folder / "regions.json"};
+  for (const fs::path& former : exported_files(CasePaths{request.folder})) fs::remove(former);
   write_artefact(outcome.files[0], [&](const fs::path& path) { write_vtu(path, file); });
   write_artefact(outcome.files[1], [&](const fs::path& path) {
     std::ofstream out(path);
