@@ -33,7 +33,8 @@ using NamedBodies = std::vector<std::pair<std::string, py::object>>;
 RegionBody body_of(const std::string& name, std::shared_ptr<const Psi> p) {
   if (const std::string problem = problem_of_region_name(name); !problem.empty())
     throw std::invalid_argument("the name '" + name + "' " + problem);
-  RegionBody body{.name = name};
+  RegionBody body;
+  body.name = name;
   Box box;
   for (const Vec3& x : p->domain.cloud.points) {
     body.samples.push_back(x + p->domain.shift);

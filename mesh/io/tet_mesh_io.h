@@ -24,13 +24,13 @@ struct MeshFile {
   TetMesh mesh;
   std::map<std::string, FieldValues> point_data;  ///< one value per mesh.V
   std::map<std::string, FieldValues> cell_data;   ///< one value per mesh.C
-  /// Names of the values of cell data `region`; empty if the file has no names.
-  std::map<std::int64_t, std::string> region_names = {};
-  std::size_t n_unused_vertices = 0;  ///< vertices of the file that were dropped because no tet uses them
+  std::size_t n_unused_vertices = 0;              ///< vertices of the file that were dropped because no tet uses them
   /// The ten-node mesh as read, if all tets have ten nodes. Then `mesh` contains their corners, which are its first
   /// vertices.
   std::optional<QuadraticTetMesh> quadratic = std::nullopt;
   std::map<std::string, FieldValues> quadratic_data = {};  ///< one value per quadratic->V
+  /// Names of the values of cell data `region`; empty if the file has no names.
+  std::map<std::int64_t, std::string> region_names = {};
 };
 
 /// Error for a file whose content contradicts its name or itself; what() contains the path, the location and the

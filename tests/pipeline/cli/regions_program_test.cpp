@@ -6,12 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh/expression/expression.h"
 #include "mesh/io/tet_mesh_io.h"
-#include "pipeline/reports/region_json.h"
 #include "tests/pipeline/cli/program_fixture.h"
 #include "tests/support/tet_shapes.h"
-#include "umtet/umtet.h"
 
 namespace umtet {
 namespace {
@@ -120,26 +117,6 @@ TEST_F(RegionsProgram, RegionsThatDoNotShareTheirVerticesFail) {
   const Result r = run("check two.vtu");
   EXPECT_EQ(r.code, 6) << r.out;
   EXPECT_NE(r.out.find("4 boundary faces lie on another one"), std::string::npos) << r.out;
-}
-
-TEST_F(RegionsProgram, TheFacadeHasTheSameCertificate) {
-  const fs::path out = folder / "facade";
-  ASSERT_EQ(run("regions shell='x^2+y^2+z^2-1' core='x^2+y^2+z^2-.3'" + kBox + " --tets 60000 -o facade").code, 0);
-  const auto of_formula = [](const char* name, const char* formula) {
-    return region_body(name, shared_function(Expression(formula)));
-  };
-  const RegionBodyMesh mesh =
-      mesh_region_bodies({of_formula("shell", "x^2+y^2+z^2-1"), of_formula("core", "x^2+y^2+z^2-.3")},
-                         {.tets = 60000, .box = Box(Vec3::Constant(-2), Vec3::Constant(2))});
-  EXPECT_EQ(document_of_regions(mesh).dump(), Json::parse(content(out / "regions.json")).dump());
-  const MeshFile file = read_tet_mesh(out / "regions.vtu");
-  EXPECT_EQ(file.mesh.C, mesh.mesh.mesh.C);
-  EXPECT_TRUE(std::equal(file.mesh.V.begin(), file.mesh.V.end(), mesh.mesh.mesh.V.begin(), mesh.mesh.mesh.V.end()));
-  struct NoHessian {
-    double value(const Vec3& x) const { return x.norm() - 1; }
-    Vec3 gradient(const Vec3& x) const { return x.normalized(); }
-  };
-  EXPECT_THROW(region_body("ball", shared_function(NoHessian())), std::invalid_argument);
 }
 
 TEST_F(RegionsProgram, BadCallsNameTheRemedy) {
