@@ -36,6 +36,7 @@ struct ExportedFile {
 };
 
 constexpr const char* kRegionsMesh = "regions.vtu";
+constexpr const char* kBoundaryHdf5 = "mesh_boundary.h5";  // of several regions
 
 struct ExportFormat {
   std::string name;
@@ -90,6 +91,8 @@ std::vector<PendingFile> files_of(const ExportFormat& format, const fs::path& fo
     files.push_back(
         {folder / ("mesh" + file.ending), [&mesh, &file](const fs::path& path) { file.write(path, mesh); }});
   }
+  if (format.pieces == PieceFormat::Xdmf && !mesh.regions.empty())
+    files.push_back({folder / kBoundaryHdf5, [&mesh](const fs::path& path) { write_boundary_hdf5(path, mesh); }});
   if (!format.surface || mesh.patches.size() < 2) return files;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     std::string name = mesh.patches[p].name;
@@ -116,6 +119,7 @@ bool is_piece(const std::string& name, PieceFormat format) {
 }
 
 bool is_exported(const std::string& name) {
+  if (name == kBoundaryHdf5) return true;
   for (const ExportFormat& format : formats_known()) {
     if (format.pieces && is_piece(name, *format.pieces)) return true;
     for (const ExportedFile& file : format.files) {

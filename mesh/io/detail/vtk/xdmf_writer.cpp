@@ -79,6 +79,12 @@ class Hdf5Image {
   Handle access_, file_;
 };
 
+void put_faces(Hdf5Image& image, const SolverMesh& mesh) {
+  const std::vector<int> faces = mesh.faces();
+  image.put("faces", faces.data(), mesh.n_faces(), static_cast<std::size_t>(mesh.nodes_per_face()));
+  image.put("patch", FieldValues(detail::patch_numbers(mesh)));
+}
+
 /// One grid: its cells are the dataset `cells` of the HDF5 file.
 class XdmfWriter {
  public:
@@ -152,11 +158,23 @@ void write_hdf5(const std::filesystem::path& path, const SolverMesh& mesh) {
     Hdf5Image image;
     image.put("nodes", reinterpret_cast<const double*>(mesh.nodes.data()), mesh.nodes.size(), 3);
     image.put("tets", mesh.tets.data(), mesh.n_tets(), static_cast<std::size_t>(mesh.nodes_per_tet));
-    const std::vector<int> faces = mesh.faces();
-    image.put("faces", faces.data(), mesh.n_faces(), static_cast<std::size_t>(mesh.nodes_per_face()));
-    image.put("patch", FieldValues(detail::patch_numbers(mesh)));
+    put_faces(image, mesh);
     for (const auto& [name, values] : detail::with_node_sets(mesh)) image.put("point_data/" + name, values);
     for (const auto& [name, values] : mesh.cell_data) image.put("cell_data/" + name, values);
+    bytes = image.bytes();
+  }
+  CheckedFile file(path);
+  file.text(bytes);
+  file.close();
+}
+
+void write_boundary_hdf5(const std::filesystem::path& path, const SolverMesh& mesh) {
+  require_consistent(mesh);
+  std::string bytes;
+  {
+    const QuietHdf5 quiet;
+    Hdf5Image image;
+    put_faces(image, mesh);
     bytes = image.bytes();
   }
   CheckedFile file(path);
