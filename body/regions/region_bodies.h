@@ -27,7 +27,7 @@ enum class Overlap {
 ///
 /// A body is missed where more than ten of its visible samples, and more than one in a thousand, are farther than 1.5 h
 /// from the vertices of its interfaces: the vertices of a face are within .6 h of its points.
-/// \throw UsageError  no body, names that repeat, or no box of a body and no options.box
+/// \throw UsageError  no body, names that repeat (case aside), or no box of a body and no options.box
 /// \throw MeshingImpossible  a body reaches the boundary of the box, or none is in it
 /// \throw Cancelled
 RegionBodyMesh mesh_region_bodies(const std::vector<RegionBody>& bodies, const RegionBodyOptions& options,

@@ -10,6 +10,7 @@
 #include "common/context.h"
 #include "common/vec3.h"
 #include "mesh/background/background_mesh.h"
+#include "mesh/regions/periodic_mesh.h"
 #include "mesh/regions/region_certificate.h"
 #include "mesh/regions/region_domain.h"
 #include "mesh/regions/region_mesh.h"
@@ -21,6 +22,7 @@ struct RegionBodyOptions {
   std::int64_t tets = 0;        ///< approximate number of tets; 0: 100,000, and more for the labels of a volume
   std::optional<Box> box = {};  ///< the box of the mesh; empty: the known boxes of bodies, and kRoom edges around them
   bool has_outside = true;      ///< whether the mesh fills the box
+  bool is_periodic = false;     ///< the box is one period of the domain along each axis
   Context context = {};
 };
 
@@ -52,6 +54,9 @@ struct RegionBodyMesh {
   std::vector<std::string> names;         ///< per region; "outside" first
   std::vector<MissedBodySamples> missed;  ///< per body with samples
   std::vector<RegionVoxels> voxels;       ///< per label of a volume
+  Vec3 sides = Vec3::Zero();              ///< of a period; 0 if the mesh is not periodic
+  std::vector<PeriodicPair> pairs;        ///< vertices of a periodic mesh on opposite sides
+  std::optional<PeriodicMatch> match;     ///< of a periodic mesh
   /// Why the mesh is not right; empty if it is: failures() of the certificate, bodies whose samples the mesh misses,
   /// and labels whose voxels it does not show.
   std::vector<std::string> reasons;
@@ -60,10 +65,10 @@ struct RegionBodyMesh {
 /// Edges between the bodies and the boundary of the box, where the box is not given.
 inline constexpr double kRoom = 4;
 
-/// Makes the mesh of a domain, and certifies it. A box with `has_outside` has flat walls.
+/// Makes the mesh of a domain, and certifies it. A box with `has_outside` has flat walls, unless the mesh is periodic.
 /// @param names   one name per region
 /// @param bodies  the box around them, if options.box is empty
-/// \throw UsageError         names that repeat
+/// \throw UsageError         names that repeat, or a domain that does not repeat in the box of a periodic mesh
 /// \throw MeshingImpossible  a body reaches the boundary of the box, or none is in it
 /// \throw Cancelled
 RegionBodyMesh mesh_region_domain(const RegionDomain& domain, std::vector<std::string> names, const Box& bodies,

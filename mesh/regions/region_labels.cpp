@@ -243,13 +243,14 @@ std::vector<std::string> problems(const RegionLabelParams& params) {
 }
 
 RegionLabels choose_labels(const RegionDomain& domain, const BackgroundMesh& background, const VertexLinks& links,
-                           const RegionLabelParams& params, const Context& context) {
+                           const RegionLabelParams& params, const Context& context,
+                           const detail::PeriodicCells* cells) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);
   RegionLabels chosen;
   chosen.of_vertex = detail::regions_of_vertices(domain, background, chosen.n_psi_evaluations, context);
-  detail::LabelBand band(domain, background, links, chosen.of_vertex, params.reach, context);
+  detail::LabelBand band(domain, background, links, chosen.of_vertex, params.reach, cells, context);
   chosen.leaves_background = band.leaves_background();
   if (chosen.leaves_background) return chosen;
   chosen.n_psi_evaluations += band.n_psi_evaluations();

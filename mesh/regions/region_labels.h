@@ -13,6 +13,10 @@
 
 namespace umtet {
 
+namespace detail {
+class PeriodicCells;
+}
+
 /// Parameters of choose_labels(). Lengths are in edges of the background.
 struct RegionLabelParams {
   /// A vertex begins in a greater region only where it is deeper than this below their sheet: the tets of the greater
@@ -76,8 +80,10 @@ struct RegionLabels {
 ///
 /// A label changes only where the vertices of each set {label >= k} keep their topology (LinkState::simple).
 /// One thread; the same labels on every run.
+/// @param cells  null, or the cells of a torus: copies of vertices have the labels of their representatives
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 RegionLabels choose_labels(const RegionDomain& domain, const BackgroundMesh& background, const VertexLinks& links,
-                           const RegionLabelParams& params = {}, const Context& context = {});
+                           const RegionLabelParams& params = {}, const Context& context = {},
+                           const detail::PeriodicCells* cells = nullptr);
 
 }  // namespace umtet

@@ -126,7 +126,9 @@ CommandParser::CommandParser() {
                   "bodies cover earlier ones. Or IMAGE, whose labels are the regions")
       ->required();
   regions.add_option("-o", in_.output, "folder for regions.vtu and regions.json");
+  add_formats(regions, "--export");
   regions.add_flag("--least", in_.least, "a point belongs to the body whose formula is least, not to the last one");
+  regions.add_flag("--periodic", in_.periodic, "the box is one period: opposite sides of the mesh match");
   regions.add_flag("--no-outside", in_.no_outside, "mesh the bodies alone, not the rest of the box");
   add_parameter_sources(regions);
   for (const ParamField& f : params_fields())
@@ -158,7 +160,7 @@ CommandParser::CommandParser() {
 
   CLI::App& check =
       add_command("check", make_check, "Check validity and quality of any tet mesh; exit 6 if the check fails");
-  check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
+  check.add_option("MESH", in_.input, ".vtu, .msh, .mesh or .inp")->required();
   check.add_option("--against", in_.against, "case whose surface the mesh should fit");
   add_parameter_sources(check);
   add_parameter_flags(check, {"output"},
@@ -166,7 +168,7 @@ CommandParser::CommandParser() {
                        keys::output::patch_angle, keys::output::patch_planar});
 
   CLI::App& exports = add_command("export", make_export, "Write files for solvers and viewers to CASE/4-export");
-  exports.add_option("CASE", in_.input, "a case with a mesh")->required();
+  exports.add_option("CASE", in_.input, "a case with a mesh, or a folder of umtet regions")->required();
   add_formats(exports, "--format").required();
   add_parameter_flags(exports, {"output"},
                       {keys::output::units, keys::output::max_memory, keys::output::min_quality, keys::output::strict,

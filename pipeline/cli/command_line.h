@@ -31,6 +31,7 @@ struct EvolveCommand {
 
 struct RegionsCommand {
   RegionsRequest request;
+  std::vector<std::string> formats;  ///< written to FOLDER/4-export
 };
 
 struct BatchCommand {

@@ -250,10 +250,11 @@ Command make_regions(const CLI::App& app, const CommandInputs& in) {
     for (const std::string& body : in.bodies) request.bodies.push_back(named_source(body));
   }
   request.has_outside = !in.no_outside;
+  request.is_periodic = in.periodic;
   request.overlap = in.least ? Overlap::Least : Overlap::Later;
   if (in.output.empty()) throw UsageError("regions: -o FOLDER is missing");
   request.folder = in.output;
-  return RegionsCommand{std::move(request)};
+  return RegionsCommand{std::move(request), in.formats};
 }
 
 Command make_inspect(const CLI::App& app, const CommandInputs& in) {

@@ -166,7 +166,12 @@ Output Execution::operator()(EvolveCommand& command) const {
 Output Execution::operator()(RegionsCommand& command) const {
   set_work_at_hand("regions");
   command.request.threads = options.threads;
-  const RegionsOutcome outcome = mesh_regions(command.request, progress);
+  RegionsOutcome outcome = mesh_regions(command.request, progress);
+  if (!command.formats.empty()) {
+    set_work_at_hand("export");
+    for (auto& file : export_regions(command.request.folder, command.formats, progress))
+      outcome.files.push_back(std::move(file));
+  }
   progress.clear();
   return {outcome.code,
           outcome.text + file_list(outcome.files),
@@ -201,12 +206,22 @@ std::shared_ptr<const MeshWithBoundary> Execution::parts_of(const ExportCommand&
   return run_case(request, progress).parts;
 }
 
+constexpr const char* kKeysOfPatches[] = {keys::output::label_names, keys::output::label_min_area,
+                                          keys::output::patch_angle, keys::output::patch_planar};
+
+/// \throw UsageError  a parameter that divides the boundary into patches
+void require_no_patches(const Parameters& parameters) {
+  for (const char* key : kKeysOfPatches) {
+    if (parameters.source(key) >= ParamSource::Set)
+      throw UsageError(std::string(key) + " applies to one body; the patches of several are their interfaces");
+  }
+}
+
 /// Reports settings of former calls that divide the boundary into patches.
 void tell_patches(const ExportCommand& command, Progress& progress) {
   const auto concerns = [](const std::string& text) {
-    const auto keys = {keys::output::label_names, keys::output::label_min_area, keys::output::patch_angle,
-                       keys::output::patch_planar};
-    return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return text.starts_with(key); });
+    return std::any_of(std::begin(kKeysOfPatches), std::end(kKeysOfPatches),
+                       [&](const char* key) { return text.starts_with(key); });
   };
   for (const KeptParameter& kept : command.parameters.kept()) {
     if (concerns(kept.key)) progress.say("export: keeps " + kept.words + " (--fresh drops it)");
@@ -219,6 +234,14 @@ void tell_patches(const ExportCommand& command, Progress& progress) {
 Output Execution::operator()(const ExportCommand& command) const {
   require_case(command.case_folder);
   require_formats(command.formats);
+  if (has_regions(command.case_folder)) {
+    require_no_patches(command.parameters);
+    set_work_at_hand("export");
+    const CaseLock lock(command.case_folder);
+    const auto files = export_regions(command.case_folder, command.formats, progress);
+    progress.clear();
+    return output_of_files(files);
+  }
   tell_patches(command, progress);
   if (ranks.n == 1 || !is_in_pieces(command.formats)) require_current_mesh({command.case_folder});
   std::shared_ptr<const MeshWithBoundary> parts;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/reports/region_lines.h"
+
 namespace umtet {
 namespace {
 
@@ -253,6 +255,7 @@ std::string summary(const Certificate& c) {
 std::string summary(const MeshCheck& c) {
   const std::string judged = c.defects ? judgements(c.verdict, false) : c.is_valid ? "valid" : "NOT valid";
   return verdict_lines(c.verdict, judged, {}) + mesh_lines(c.mesh, suffix(c.units), {}) +
+         (c.regions ? region_lines(c.regions->certificate, c.regions->file.names, false) : "") +
          second_order_lines(c.second_order) + holes_line(c.support, suffix(c.units)) +
          (c.defects ? defects_line(*c.defects) : "");
 }

@@ -28,7 +28,8 @@ struct RegionsRequest {
   std::vector<NamedSource> bodies;  ///< region k + 1
   std::filesystem::path image;      ///< of labels, instead of bodies
   Overlap overlap = Overlap::Later;
-  bool has_outside = true;  ///< whether the mesh fills the box
+  bool has_outside = true;   ///< whether the mesh fills the box
+  bool is_periodic = false;  ///< the box is one period
   std::filesystem::path folder;
   Parameters parameters;  ///< parameters of stage one for files; mesh.box, mesh.h, mesh.tets, output.label_names
   int threads = 1;
@@ -42,7 +43,8 @@ struct RegionsOutcome {
 };
 
 /// Makes one mesh of several bodies that share their interfaces, and writes FOLDER/regions.vtu, with the region of
-/// each tet, and its certificate FOLDER/regions.json.
+/// each tet, and its certificate FOLDER/regions.json. The pairs of vertices of a periodic mesh are in
+/// FOLDER/periodic.csv.
 ///
 /// The regions of an image are its labels; output.label_names are their names.
 ///

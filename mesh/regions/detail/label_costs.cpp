@@ -82,7 +82,7 @@ double LabelCosts::cost_of_tets(int v) {
   for (int k = 0; k < link.n; ++k) {
     const int w = band_.link(v)[k];
     if (w < 0) return 0;
-    corner[k] = place(w);
+    corner[k] = place(w) + band_.to_copy(v, k);
   }
   const Vec3 centre = place(v);
   double cost = 0;

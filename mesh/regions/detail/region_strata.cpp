@@ -62,11 +62,8 @@ std::vector<std::array<int, 2>> neighbours_on_curves(const RegionMesh& made, con
 
 }  // namespace
 
-RegionStrata::RegionStrata(const RegionDomain& domain, const BackgroundMesh& background, const RegionMesh& made)
-    : strata(domain.boundary(), list_strata(domain, made, of_vertex)) {
-  is_fixed.reserve(made.background_vertex.size());
-  for (const std::int64_t v : made.background_vertex) is_fixed.push_back(background.on_boundary(v) ? 1 : 0);
-}
+RegionStrata::RegionStrata(const RegionDomain& domain, const RegionMesh& made)
+    : strata(domain.boundary(), list_strata(domain, made, of_vertex)) {}
 
 std::vector<Vec3> RegionStrata::targets(const RegionMesh& made) const {
   const std::size_t n = of_vertex.size();

@@ -10,6 +10,7 @@
 
 #include "mesh/io/tet_mesh_io.h"
 #include "tests/pipeline/cli/program_fixture.h"
+#include "tests/support/tet_shapes.h"
 
 namespace umtet {
 namespace {
@@ -115,6 +116,65 @@ TEST_F(RegionsProgram, AFoamBelongsToTheLeastFunction) {
   EXPECT_NEAR(a, b, .01 * a);
 }
 
+TEST_F(RegionsProgram, ExportsHaveARegionEachAndAreCheckedByRegion) {
+  const fs::path out = folder / "nested";
+  const Result r = run("regions shell='x^2+y^2+z^2-1' core='x^2+y^2+z^2-.3'" + kBox + " --tets 60000 -o nested");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Json made = Json::parse(content(out / "regions.json"));
+  ASSERT_EQ(run("export nested --format vtu,msh,msh22,mesh,inp,bdf,feb,cdb,xdmf,stl,pvtu").code, 0);
+  EXPECT_TRUE(fs::exists(out / "4-export/mesh.shell+core.stl"));
+  for (const char* file : {"regions.vtu", "4-export/mesh.vtu", "4-export/mesh.msh", "4-export/mesh_22.msh",
+                           "4-export/mesh.mesh", "4-export/mesh.inp"}) {
+    const Result checked = run("check --json " + (out / file).string());
+    ASSERT_EQ(checked.code, 0) << checked.err;
+    const Json check = Json::parse(checked.out)["check"];
+    ASSERT_EQ(check["regions"].size(), 3U) << file;
+    EXPECT_EQ(check["unshared_faces"], 0) << file;
+    const bool has_names = std::string(file) != "4-export/mesh.mesh";
+    for (const char* name : {"outside", "shell", "core"}) {
+      const auto same = [&](const char* wanted, const Json& list) {
+        return *std::find_if(list.begin(), list.end(), [&](const Json& region) { return region["name"] == wanted; });
+      };
+      const std::string number = std::string(name) == "outside" ? "3" : std::string(name) == "shell" ? "1" : "2";
+      const Json found = same(has_names ? name : number.c_str(), check["regions"]),
+                 wanted = same(name, made["regions"]);
+      EXPECT_EQ(found["n_tets"], wanted["n_tets"]) << file;
+      EXPECT_EQ(found["pieces"], wanted["pieces"]) << file;
+      EXPECT_EQ(found["boundary"]["euler_characteristic"], wanted["boundary"]["euler_characteristic"]) << file;
+      const double volume = wanted["volume"];
+      EXPECT_NEAR(found["volume"], volume, 1e-9 * volume) << file;
+      EXPECT_NEAR(found["quality"]["min"], wanted["quality"]["min"], 1e-6) << file;
+    }
+    EXPECT_EQ(check["interfaces"].size(), 2U) << file;
+    if (has_names) {
+      EXPECT_EQ(check["interfaces"][1]["name"], "shell|core") << file;
+    }
+  }
+  const Result text = run("check nested/4-export/mesh.msh");
+  EXPECT_NE(text.out.find("interface shell|core"), std::string::npos) << text.out;
+  // Another mesh removes the exports of this one.
+  ASSERT_EQ(run("regions ball='x^2+y^2+z^2-1'" + kBox + " --tets 30000 -o nested --export msh").code, 0);
+  EXPECT_FALSE(fs::exists(out / "4-export/mesh.inp"));
+  EXPECT_TRUE(fs::exists(out / "4-export/mesh.msh"));
+  EXPECT_EQ(run("export nested --format pmsh").code, 2);
+  EXPECT_EQ(run("export nested --format msh --patch-angle 40").code, 2);
+}
+
+TEST_F(RegionsProgram, RegionsThatDoNotShareTheirVerticesFail) {
+  // Two cubes of tets that touch in a square, as two parts whose nodes were not merged.
+  TetMesh two = testing::cubes(1, [](int, int, int) { return true; });
+  const TetMesh one = two;
+  const auto n = static_cast<int>(one.V.size());
+  for (const Vec3& x : one.V) two.V.emplace_back(2 - x[0], x[1], x[2]);
+  for (const Tet& t : one.C) two.C.push_back({t[0] + n, t[1] + n, t[3] + n, t[2] + n});
+  std::vector<std::int64_t> region(two.C.size(), 1);
+  std::fill(region.begin() + static_cast<std::ptrdiff_t>(one.C.size()), region.end(), 2);
+  write_vtu(folder / "two.vtu", MeshFile{two, {}, {{"region", region}}});
+  const Result r = run("check two.vtu");
+  EXPECT_EQ(r.code, 6) << r.out;
+  EXPECT_NE(r.out.find("4 boundary faces lie on another one"), std::string::npos) << r.out;
+}
+
 TEST_F(RegionsProgram, BadCallsNameTheRemedy) {
   const std::string out = " -o " + (folder / "bad").string();
   const auto refused = [&](const std::string& words, int code, const std::string& text) {
@@ -138,6 +198,9 @@ TEST_F(RegionsProgram, BadCallsNameTheRemedy) {
   refused("2=x^2-1" + kBox + out, 2, "2");
   refused("a='x^2+y^2+z^2-1' a='x^2+y^2+z^2-1'" + kBox + out, 2, "another region");
   refused("outside='x^2+y^2+z^2-1'" + kBox + out, 2, "another region");
+  refused("a='x^2+y^2+z^2-1' A='x^2+y^2+z^2-1'" + kBox + out, 2, "another region");
+  refused("walls='x^2+y^2+z^2-1'" + kBox + out, 2, "boundary");
+  refused("a='x^2+y^2+z^2-1' --export msg" + kBox + out, 2, "msh");
   refused("a='x^2+y^2+z^2-1'" + out, 2, "--box");
   refused("a='x^2+y^2+z^2-1'" + kBox, 2, "-o");
   refused("a='max(x,y)'" + kBox + out, 2, "C2");
