@@ -342,20 +342,22 @@ PeriodicMesh make_periodic_region_mesh(const RegionDomain& domain, const Box& bo
 
   context.report("finish", kFinish);
   CutMesh cut = cut_along_manifold(torus, first_cut);
+  for (int k = 1; k < kCuts && !pinched_vertices(cut.mesh.mesh).empty(); ++k)
+    cut = cut_along_manifold(torus, first_cut + k * torus.sides / kCuts);
   made.mesh = std::move(cut.mesh);
   RegionMesh& mesh = made.mesh;
   mesh.flips = flips;
-  for (const InvalidVertex& v : labels.invalid)
-    mesh.defects.push_back(
-        {RegionDefect::Kind::Connectivity,
-         lattice.origin + lattice.scale.cwiseProduct(lattice.background.position(v.background_vertex)),
-         detail::members(v.regions)});
   mesh.labels = std::move(labels);
   for (Vec3& x : mesh.mesh.V) x = lattice.origin + lattice.scale.cwiseProduct(x);
   for (std::size_t v = 0; v < cut.corner.size(); ++v)
     mesh.background_vertex[v] = torus.background_vertex[static_cast<std::size_t>(cut.corner[v].vertex)];
   for (std::int64_t& t : mesh.background_tet) t = torus.background_tet[static_cast<std::size_t>(t)];
-  const std::vector<int> new_vertex = detail::finish(domain, params.has_outside, mesh);
+  const std::vector<int> new_vertex = detail::finish(
+      domain, params,
+      [&](std::int64_t v) -> Vec3 {
+        return lattice.origin + lattice.scale.cwiseProduct(lattice.background.position(v));
+      },
+      mesh);
   std::vector<Corner> corner(mesh.mesh.V.size());
   for (std::size_t v = 0; v < new_vertex.size(); ++v)
     if (new_vertex[v] >= 0) corner[static_cast<std::size_t>(new_vertex[v])] = cut.corner[v];

@@ -20,13 +20,19 @@ constexpr double kLeastGain = 1e-6;  // less is rounding
 constexpr std::size_t kVerticesPerPoll = 1 << 10;
 constexpr double kLastTemperature = .02;  // the cost of a distance of .45 edges
 constexpr std::uint32_t kSeed = 1;
+constexpr int kMostFailures = 2;   // of annealing around a vertex: it is random
 constexpr int kAnnealedRings = 2;  // three find no more, in twice the time
 
 /// The search for labels of low cost in a band.
 class LabelSearch {
  public:
   LabelSearch(detail::LabelCosts& costs, const RegionLabelParams& params)
-      : costs_(costs), band_(costs.band()), params_(params), open_(costs.size(), 0), random_(kSeed) {}
+      : costs_(costs),
+        band_(costs.band()),
+        params_(params),
+        open_(costs.size(), 0),
+        n_failures_(costs.size(), 0),
+        random_(kSeed) {}
 
   void operator()(const Context& context, RegionLabels& report) {
     report.n_invalid_at_start = count_invalid();
@@ -40,10 +46,10 @@ class LabelSearch {
       if (report.n_changes == before) break;
     }
     for (int round = 0; round < params_.annealing_rounds; ++round) {
-      const std::vector<int> bad = bad_vertices();
-      if (bad.empty()) break;
-      for (const int v : bad)
-        if (is_bad(v)) anneal_around(v, context, report);
+      const std::size_t before = report.n_changes;
+      for (const int v : bad_vertices())
+        if (is_bad(v) && n_failures_[v] < kMostFailures && !anneal_around(v, context, report)) ++n_failures_[v];
+      if (report.n_changes == before) break;
       open_around_bad(1);
       change_singles(context, report);
     }
@@ -191,10 +197,11 @@ class LabelSearch {
   }
 
   /// Simulated annealing of the labels around a bad vertex. The best labels that it meets are kept.
-  void anneal_around(int centre, const Context& context, RegionLabels& report) {
+  /// @return whether they cost less than before
+  bool anneal_around(int centre, const Context& context, RegionLabels& report) {
     context.poll();
     const std::vector<int> ball = movable_around(centre);
-    if (ball.empty()) return;
+    if (ball.empty()) return false;
     std::vector<std::uint8_t> start(ball.size());
     const auto read = [&](std::vector<std::uint8_t>& labels) {
       for (std::size_t k = 0; k < ball.size(); ++k) labels[k] = band_.label[ball[k]];
@@ -216,12 +223,14 @@ class LabelSearch {
       if (best[k] != band_.label[ball[k]]) costs_.set(ball[k], best[k]);
       report.n_changes += best[k] != start[k] ? 1 : 0;
     }
+    return least < -kLeastGain;
   }
 
   detail::LabelCosts& costs_;
   const detail::LabelBand& band_;
   const RegionLabelParams& params_;
-  std::vector<std::uint8_t> open_;  ///< a change may lower the cost
+  std::vector<std::uint8_t> open_;        ///< a change may lower the cost
+  std::vector<std::uint8_t> n_failures_;  ///< of annealing around each vertex
   std::mt19937 random_;
 };
 

@@ -68,10 +68,6 @@ RegionMesh make_region_mesh(const RegionDomain& domain, const BackgroundMesh& ba
   list_tets(background, made.labels.of_vertex, made);
   made.labels.of_vertex = {};
   detail::find_regions_at_vertices(made);
-  for (const InvalidVertex& v : made.labels.invalid)
-    made.defects.push_back(
-        {RegionDefect::Kind::Connectivity, background.position(v.background_vertex), detail::members(v.regions)});
-
   std::vector<char> is_fixed;
   is_fixed.reserve(made.mesh.V.size());
   for (const std::int64_t v : made.background_vertex) is_fixed.push_back(background.on_boundary(v) ? 1 : 0);
@@ -80,7 +76,8 @@ RegionMesh make_region_mesh(const RegionDomain& domain, const BackgroundMesh& ba
   context.report("repair", kRepair);
   detail::flip_regions(domain, is_fixed, params.flips, made, context);
   detail::find_regions_at_vertices(made);
-  detail::finish(domain, params.has_outside, made);
+  detail::finish(
+      domain, params, [&](std::int64_t v) { return background.position(v); }, made);
   return made;
 }
 

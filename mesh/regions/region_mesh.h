@@ -36,8 +36,8 @@ struct RegionMeshParams {
 /// Something that an interface does not have as its domain asks for. The mesh is valid all the same.
 struct RegionDefect {
   enum class Kind : std::uint8_t {
-    Connectivity,  ///< the tets around a vertex do not lie as at a sheet, curve or corner: the interface is thin or
-                   ///< under-resolved there
+    Connectivity,  ///< the tets around a vertex did not lie as at a sheet, curve or corner, and flips have left a poor
+                   ///< one: the interface is thin or under-resolved there
     NotOnStratum,  ///< a vertex is not on its sheet, curve or corner
     Lost           ///< a region without a tet
   };

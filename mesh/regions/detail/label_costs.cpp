@@ -86,9 +86,14 @@ double LabelCosts::cost_of_tets(int v) {
   }
   const Vec3 centre = place(v);
   double cost = 0;
+  // Q < poor where volume6^2 < (poor sum / factor)^3: the root is left for those few.
+  const double of_sum = params_.poor_quality / kMeanRatioFactor;
   for (const auto& t : link.triangles) {
-    const double lack = 1 - mean_ratio(centre, corner[t[0]], corner[t[1]], corner[t[2]]) / params_.poor_quality;
-    if (lack > 0) cost += lack * lack;
+    const Vec3 &a = corner[t[0]], &b = corner[t[1]], &c = corner[t[2]];
+    const double volume = volume6(centre, a, b, c), bound = of_sum * sum_of_squared_edges(centre, a, b, c);
+    if (volume > 0 && volume * volume >= bound * bound * bound) continue;
+    const double lack = 1 - mean_ratio(centre, a, b, c) / params_.poor_quality;
+    cost += lack * lack;
   }
   return cost;
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 #include <numeric>
 #include <utility>
 
+#include "mesh/core/tet_quality.h"
 #include "mesh/regions/detail/region_strata.h"
 
 namespace umtet::detail {
@@ -93,6 +95,20 @@ void list_lost_regions(int n_regions, RegionMesh& made) {
     if (!has_tet[r]) made.defects.push_back({RegionDefect::Kind::Lost, Vec3::Zero(), {r}});
 }
 
+/// Lists the vertices that were not valid and have a tet below a mean ratio: flips have mended the others.
+void list_poor_connectivity(double poor, const std::function<Vec3(std::int64_t)>& position, RegionMesh& made) {
+  std::map<std::int64_t, double> least;
+  for (const InvalidVertex& v : made.labels.invalid) least[v.background_vertex] = 1;
+  if (least.empty()) return;
+  for (const Tet& t : made.mesh.C)
+    for (const int v : t)
+      if (const auto at = least.find(made.background_vertex[v]); at != least.end())
+        at->second = std::min(at->second, mean_ratio(made.mesh, t));
+  for (const InvalidVertex& v : made.labels.invalid)
+    if (least[v.background_vertex] < poor)
+      made.defects.push_back({RegionDefect::Kind::Connectivity, position(v.background_vertex), members(v.regions)});
+}
+
 void list_vertices_off(const RegionDomain& domain, RegionMesh& made) {
   const RegionStrata strata(domain, made);
   for (std::size_t v = 0; v < made.mesh.V.size(); ++v)
@@ -115,13 +131,15 @@ void find_regions_at_vertices(RegionMesh& made) {
     for (const int v : made.mesh.C[t]) made.regions_at[v] |= RegionSet{1} << made.region[t];
 }
 
-std::vector<int> finish(const RegionDomain& domain, bool has_outside, RegionMesh& made) {
+std::vector<int> finish(const RegionDomain& domain, const RegionMeshParams& params,
+                        const std::function<Vec3(std::int64_t)>& position, RegionMesh& made) {
+  list_poor_connectivity(params.labels.poor_quality, position, made);
   list_vertices_off(domain, made);
   list_lost_regions(domain.n_regions(), made);
   list_faces(made);
   std::vector<int> new_vertex(made.mesh.V.size());
   std::iota(new_vertex.begin(), new_vertex.end(), 0);
-  if (!has_outside) drop_outside(made, new_vertex);
+  if (!params.has_outside) drop_outside(made, new_vertex);
   return new_vertex;
 }
 

@@ -106,6 +106,23 @@ TEST_F(RegionsProgram, AVoxelThatIsTooSmallForHIsNamed) {
   EXPECT_FALSE(json["reasons"].empty());
 }
 
+TEST_F(RegionsProgram, SidesOfAPeriodMatch) {
+  const fs::path out = folder / "cell";
+  const std::string ball = "-1.2-cos(6.283185307179586*x)-cos(6.283185307179586*y)-cos(6.283185307179586*z)";
+  const Result r = run("regions --periodic holes='" + ball + "' --box=0,0,0,1,1,1 --tets 40000 -o " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err << r.out;
+  EXPECT_NE(r.out.find("opposite sides"), std::string::npos);
+  const Json json = Json::parse(content(out / "regions.json"));
+  EXPECT_EQ(json["periodic"]["farthest"], 0);
+  EXPECT_EQ(json["periodic"]["faces_unmatched"], 0);
+  EXPECT_NEAR(json["volume"], 1, 1e-9);
+  const std::string pairs = content(out / "periodic.csv");
+  EXPECT_EQ(pairs.find("vertex,copy,x,y,z"), 0U);
+  EXPECT_EQ(std::count(pairs.begin(), pairs.end(), '\n'), json["periodic"]["pairs"].get<int>() + 1);
+  ASSERT_EQ(run("regions a='x^2+y^2+z^2-1'" + kBox + " --tets 30000 -o " + out.string()).code, 0);
+  EXPECT_FALSE(fs::exists(out / "periodic.csv"));
+}
+
 TEST_F(RegionsProgram, AFoamBelongsToTheLeastFunction) {
   const fs::path out = folder / "bubbles";
   const Result r =
@@ -205,6 +222,8 @@ TEST_F(RegionsProgram, BadCallsNameTheRemedy) {
   refused("a='x^2+y^2+z^2-1'" + kBox, 2, "-o");
   refused("a='max(x,y)'" + kBox + out, 2, "C2");
   refused("a='x^2+y^2+z^2-9'" + kBox + out, 5, "box");
+  refused("--periodic a='x^2+y^2+z^2-1'" + kBox + out, 2, "does not repeat");
+  refused("--periodic a='sin(x)'" + out, 2, "--box");
   refused("a='x^2+y^2+z^2+9'" + kBox + out, 5, "region");
 }
 
