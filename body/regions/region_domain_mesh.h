@@ -54,9 +54,9 @@ struct RegionBodyMesh {
   std::vector<std::string> names;         ///< per region; "outside" first
   std::vector<MissedBodySamples> missed;  ///< per body with samples
   std::vector<RegionVoxels> voxels;       ///< per label of a volume
-  Vec3 sides = Vec3::Zero();              ///< of a period; 0 if the mesh is not periodic
+  Vec3 sides = Vec3::Zero();              ///< sides of a period; 0 if the mesh is not periodic
   std::vector<PeriodicPair> pairs;        ///< vertices of a periodic mesh on opposite sides
-  std::optional<PeriodicMatch> match;     ///< of a periodic mesh
+  std::optional<PeriodicMatch> match;     ///< how the sides of a periodic mesh fit together
   /// Why the mesh is not right; empty if it is: failures() of the certificate, bodies whose samples the mesh misses,
   /// and labels whose voxels it does not show.
   std::vector<std::string> reasons;

@@ -50,7 +50,7 @@ struct Certificate {
 
 /// The regions of a mesh from a file.
 struct RegionCheck {
-  FileRegions file;               ///< what the tets are marked with
+  FileRegions file;               ///< the marks of the tets
   RegionCertificate certificate;  ///< by region; not compared with sheets
 };
 

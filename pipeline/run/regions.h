@@ -26,7 +26,7 @@ NamedSource named_source(const std::string& text);
 /// Bodies that become one mesh.
 struct RegionsRequest {
   std::vector<NamedSource> bodies;  ///< region k + 1
-  std::filesystem::path image;      ///< of labels, instead of bodies
+  std::filesystem::path image;      ///< an image of labels, instead of bodies
   Overlap overlap = Overlap::Later;
   bool has_outside = true;   ///< whether the mesh fills the box
   bool is_periodic = false;  ///< the box is one period
