@@ -248,6 +248,7 @@ Command make_regions(const CLI::App& app, const CommandInputs& in) {
   request.has_outside = !in.no_outside;
   if (in.output.empty()) throw UsageError("regions: -o FOLDER is missing");
   request.folder = in.output;
+  require_formats_of_regions(in.formats);
   return RegionsCommand{std::move(request), in.formats};
 }
 
