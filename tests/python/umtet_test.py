@@ -686,7 +686,7 @@ class Types(unittest.TestCase):
 
     def test_the_stub_is_what_is_there(self):
         with open(f"{self.folder}/of_pybind", "w") as file:  # its metaclass, and objects that Python cannot make
-            file.write("".join(f"umtet._core.{name}(.__init__)?\n" for name in ("LevelSet", "Mesh", "Moving")))
+            file.write("".join(f"umtet._core.{name}(.__init__)?\n" for name in ("LevelSet", "Mesh", "Moving", "RegionsMesh")))
         made = self.mypy("mypy.stubtest", "--allowlist", "of_pybind", "umtet._core", cwd=self.folder)
         self.assertEqual(made.returncode, 0, made.stdout)
 
