@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <string_view>
 #include <variant>
 
 namespace umtet {
@@ -11,11 +12,21 @@ namespace {
 constexpr const char* kSources[] = {"region",   "gmsh:physical", "medit:ref", "cell_tags", "MaterialIds",
                                     "Material", "material",      "label",     "labels",    "subdomain"};
 
+constexpr std::size_t kLongestShown = 64;  // characters of a name
+
 /// Whole numbers of cell data; empty if they are others.
 std::vector<std::int64_t> whole_numbers(const FieldValues& data) {
   if (const auto* wide = std::get_if<std::vector<std::int64_t>>(&data)) return *wide;
   if (const auto* bytes = std::get_if<std::vector<std::uint8_t>>(&data)) return {bytes->begin(), bytes->end()};
   return {};
+}
+
+/// Foreign text for people and tables: printable, and not long.
+std::string shown(std::string name) {
+  if (name.size() > kLongestShown) name.resize(kLongestShown);
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return name;
 }
 
 bool is_outside(const std::string& name) {
@@ -38,7 +49,7 @@ std::optional<FileRegions> file_regions(const MeshFile& file) {
     if (region_of.size() < 2) return std::nullopt;
     const auto name_of = [&](std::int64_t mark) {
       const auto name = file.region_names.find(mark);
-      return name == file.region_names.end() ? std::to_string(mark) : name->second;
+      return name == file.region_names.end() ? std::to_string(mark) : shown(name->second);
     };
     std::optional<std::int64_t> outside;
     if (region_of.contains(0)) outside = 0;

@@ -13,7 +13,7 @@ namespace umtet {
 struct FileRegions {
   std::string source;               ///< the cell data that contain the marks
   std::vector<int> of_tet;          ///< 0 .. names.size() - 1
-  std::vector<std::string> names;   ///< by region; of a mark without a name: its digits
+  std::vector<std::string> names;   ///< by region, printable; of a mark without a name: its digits
   std::vector<std::int64_t> marks;  ///< by region, as the file has them
   bool has_outside = false;         ///< whether region 0 has tets
 };

@@ -254,6 +254,7 @@ Command make_regions(const CLI::App& app, const CommandInputs& in) {
   request.overlap = in.least ? Overlap::Least : Overlap::Later;
   if (in.output.empty()) throw UsageError("regions: -o FOLDER is missing");
   request.folder = in.output;
+  require_formats_of_regions(in.formats);
   return RegionsCommand{std::move(request), in.formats};
 }
 

@@ -358,11 +358,15 @@ bool has_regions(const fs::path& folder) {
   return fs::exists(folder / kRegionsMesh) && !fs::exists(CasePaths{folder}.parameters());
 }
 
-std::vector<fs::path> export_regions(const fs::path& folder, const std::vector<std::string>& formats,
-                                     Progress& progress) {
+void require_formats_of_regions(const std::vector<std::string>& formats) {
   require_formats(formats);
   if (std::find(formats.begin(), formats.end(), "pmsh") != formats.end())
     throw UsageError("pmsh supports one body only; msh has several regions");
+}
+
+std::vector<fs::path> export_regions(const fs::path& folder, const std::vector<std::string>& formats,
+                                     Progress& progress) {
+  require_formats_of_regions(formats);
   const CasePaths paths{folder};
   progress.report("export", "read", 0);
   const SolverMesh mesh = mesh_of_regions(folder / kRegionsMesh);

@@ -218,6 +218,7 @@ TEST_F(RegionsProgram, BadCallsNameTheRemedy) {
   refused("a='x^2+y^2+z^2-1' A='x^2+y^2+z^2-1'" + kBox + out, 2, "another region");
   refused("walls='x^2+y^2+z^2-1'" + kBox + out, 2, "boundary");
   refused("a='x^2+y^2+z^2-1' --export msg" + kBox + out, 2, "msh");
+  refused("a='x^2+y^2+z^2-1' --export pmsh" + kBox + out, 2, "one body");
   refused("a='x^2+y^2+z^2-1'" + out, 2, "--box");
   refused("a='x^2+y^2+z^2-1'" + kBox, 2, "-o");
   refused("a='max(x,y)'" + kBox + out, 2, "C2");

@@ -64,7 +64,7 @@ class MshReader {
   bool is_partitioned_ = false;                    ///< entities are parts of volumes
 };
 
-/// Of physical groups. Lines that do not read as such are skipped: only names of volumes are kept.
+/// The names of physical volumes; those of other groups are skipped.
 void MshReader::read_names() {
   const std::size_t n = in_.count("number of physical names", 4);
   in_.line();
