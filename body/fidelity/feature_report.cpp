@@ -12,8 +12,8 @@ namespace {
 
 // More tets than this at an edge are no better: Q_max of 360 degrees is largest for five.
 constexpr int kMostAtEdge = 6;
-// psi is followed in steps of this many edges, as far as kReach edges, to see how thin the body is at a defect.
-constexpr double kStep = .125, kReach = 2;
+// psi is followed in steps of this many edges, as far as kFollowReach edges, to see how thin the body is at a defect.
+constexpr double kFollowStep = .125, kFollowReach = 2;
 
 double best_quality_at(double angle_deg) {
   double best = 0;
@@ -83,10 +83,10 @@ std::vector<MeshDefect> missed_features(const Domain& domain, const PiecewiseMes
     if (mesh.corner_vertex[c] < 0 && ends.count(static_cast<int>(c)) == 0) add({mesh.graph.corners[c].place});
   }
   for (const FeatureDefect& d : mesh.graph.defects) add({d.where});
-  const std::vector<double> thickness = body_thickness(domain, at, h.at(at), kStep, kReach, context);
+  const std::vector<double> thickness = body_thickness(domain, at, h.at(at), kFollowStep, kFollowReach, context);
   for (std::size_t i = 0; i < missed.size(); ++i) {
     const double h_at = h.at(at[i]);
-    if (thickness[i] < kReach * h_at) {
+    if (thickness[i] < kFollowReach * h_at) {
       missed[i].feature_over_h = thickness[i] / h_at;
       missed[i].h_needed = thickness[i] / kLeastEdgesAcross;
     }

@@ -13,7 +13,7 @@ namespace {
 // Directions in which walks begin.
 constexpr int kWalks = 8;
 // Of h: the longest step, and the shortest, at the tip of what is lost.
-constexpr double kStep = .25, kLeastStep = 1. / 64;
+constexpr double kWalkStep = .25, kLeastWalkStep = 1. / 64;
 // A walk leads away from the boundary if its distance grows by this share of a step.
 constexpr double kAway = .25;
 // A walk turns by so much at a step, to where the boundary is farther: about a cone straight walks miss its tip.
@@ -36,7 +36,7 @@ Step step_from(ImplicitFunctionRef psi, const SurfaceDistance& boundary, const V
 /// A walk from x on in this direction.
 void walk(ImplicitFunctionRef psi, const SurfaceDistance& boundary, Vec3 x, Vec3 direction, double h, double beyond,
           std::vector<LostPoint>& lost) {
-  double distance = boundary.distance(x), length = kStep * h;
+  double distance = boundary.distance(x), length = kWalkStep * h;
   for (int k = 0; k < kMostSteps; ++k) {
     Step best = step_from(psi, boundary, x, length * direction, h);
     // Where psi = 0 has a boundary near it, that shows at the first step.
@@ -52,7 +52,7 @@ void walk(ImplicitFunctionRef psi, const SurfaceDistance& boundary, Vec3 x, Vec3
       direction = (best.to - x).normalized();
       distance = best.distance;
       x = best.to;
-    } else if ((length /= 2) < kLeastStep * h) {
+    } else if ((length /= 2) < kLeastWalkStep * h) {
       return;
     }
   }

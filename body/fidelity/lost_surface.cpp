@@ -15,14 +15,14 @@ namespace {
 
 // Directions of steps, and how long they and the edges of cubes are, in h.
 constexpr int kSteps = 8;
-constexpr double kStep = .5;
+constexpr double kAroundStep = .5;
 
 /// Of a cube: the power of two below its edge length, and its place.
 using Cube = std::array<std::int64_t, 4>;
 
 Cube cube_of(const Vec3& x, double h) {
   const int level = std::ilogb(h);
-  const Eigen::Array3d q = (x / std::ldexp(kStep, level)).array().floor();
+  const Eigen::Array3d q = (x / std::ldexp(kAroundStep, level)).array().floor();
   return {level, static_cast<std::int64_t>(q[0]), static_cast<std::int64_t>(q[1]), static_cast<std::int64_t>(q[2])};
 }
 
@@ -46,7 +46,7 @@ std::vector<LostPoint> lost_surface(const Domain& domain, std::vector<LostPoint>
       const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
       for (int s = 0; s < kSteps; ++s) {
         const double angle = 2 * std::numbers::pi * s / kSteps;
-        const Vec3 step = kStep * h_at * (std::cos(angle) * u + std::sin(angle) * v);
+        const Vec3 step = kAroundStep * h_at * (std::cos(angle) * u + std::sin(angle) * v);
         if (met.count(cube_of(x + step, h_at)) != 0) continue;
         const Foot foot = foot_point(psi, x + step, h_at);
         if (!foot.found || foot.distance > step.norm() || met.count(cube_of(foot.point, h_at)) != 0) continue;

@@ -7,7 +7,8 @@
 namespace umtet {
 namespace {
 
-constexpr std::array<const char*, 8> kWords = {"folded", "off", "filled", "cut", "thin", "topology", "missed", "edges"};
+constexpr std::array<const char*, 8> kDefectWords = {"folded", "off",      "filled", "cut",
+                                                     "thin",   "topology", "missed", "edges"};
 
 bool is_worse(const MeshDefect& a, const MeshDefect& b) {
   return std::tuple(is_small(b), a.off_over_h) > std::tuple(is_small(a), b.off_over_h);
@@ -15,12 +16,12 @@ bool is_worse(const MeshDefect& a, const MeshDefect& b) {
 
 }  // namespace
 
-const char* to_string(DefectKind kind) { return kWords.at(static_cast<std::size_t>(kind)); }
+const char* to_string(DefectKind kind) { return kDefectWords.at(static_cast<std::size_t>(kind)); }
 
 std::optional<DefectKind> defect_kind_of(const std::string& word) {
-  const auto* at = std::find(kWords.begin(), kWords.end(), word);
-  if (at == kWords.end()) return std::nullopt;
-  return static_cast<DefectKind>(at - kWords.begin());
+  const auto* at = std::find(kDefectWords.begin(), kDefectWords.end(), word);
+  if (at == kDefectWords.end()) return std::nullopt;
+  return static_cast<DefectKind>(at - kDefectWords.begin());
 }
 
 bool is_small(const MeshDefect& defect) {
@@ -39,7 +40,7 @@ std::size_t DefectReport::n() const {
 DefectReport report_on(std::vector<MeshDefect>& defects) {
   std::stable_sort(defects.begin(), defects.end(), is_worse);
   DefectReport report;
-  for (std::size_t k = 0; k < kWords.size(); ++k) {
+  for (std::size_t k = 0; k < kDefectWords.size(); ++k) {
     DefectReport::OfKind of_kind{static_cast<DefectKind>(k), 0, 0, {}, 0};
     for (const MeshDefect& defect : defects) {
       if (defect.kind != of_kind.kind) continue;

@@ -11,7 +11,7 @@ namespace {
 // In edges: sheets farther than this do not matter.
 constexpr double kFarthestSheet = 4;
 // In edges: a step along the normal.
-constexpr double kStep = .25;
+constexpr double kNormalStep = .25;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ VertexThickness vertex_thickness(const Domain& domain, const TetMesh& mesh, cons
   for (const int i : boundary) made.vertices.push_back(mesh.V[i]);
   if (made.vertices.empty()) return made;
   const std::vector<double> h_at = h.at(made.vertices);
-  made.thickness = body_thickness(domain, made.vertices, h_at, kStep, kFarthestSheet, context);
+  made.thickness = body_thickness(domain, made.vertices, h_at, kNormalStep, kFarthestSheet, context);
   made.least_over_h = kFarthestSheet;
   for (std::size_t i = 0; i < made.vertices.size(); ++i) {
     made.least_over_h = std::min(made.least_over_h, made.thickness[i] / h_at[i]);
@@ -34,7 +34,7 @@ PointThickness with_lost_parts(const VertexThickness& vertices, const std::vecto
                                const Domain& domain, const MeshEdge& h, const Context& context) {
   PointThickness all;
   for (const Difference& d : lost) all.points.push_back(d.where);
-  all.thickness = body_thickness(domain, all.points, h.at(all.points), kStep, kFarthestSheet, context);
+  all.thickness = body_thickness(domain, all.points, h.at(all.points), kNormalStep, kFarthestSheet, context);
   all.points.insert(all.points.end(), vertices.vertices.begin(), vertices.vertices.end());
   all.thickness.insert(all.thickness.end(), vertices.thickness.begin(), vertices.thickness.end());
   return all;

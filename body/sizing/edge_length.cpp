@@ -132,7 +132,7 @@ ThinPart thin_part(const Domain& domain, double limit, const Context& context) {
 
 // So many tets are enough for a body that is thin all over, where it is made of two layers pressed flat (thick_body.h):
 // a plate of a hundredth of its diagonal has one edge across then. What the thickened rims take comes on top.
-constexpr double kTetsOfThinBody = 120'000;
+constexpr double kTetsOfThinShape = 120'000;
 // Of the triangles: thinner parts are less than what a mesh is chosen for.
 constexpr double kThinTriangles = .005;
 
@@ -150,10 +150,10 @@ EdgeLength of_triangles(Domain& domain, const BodyOptions& options, const Contex
                            classification_source(options));
     };
     double low = thin / kEdgesAcross, high = of_size;
-    if (n_tets(low) <= kTetsOfThinBody) high = low;
+    if (n_tets(low) <= kTetsOfThinShape) high = low;
     while (high > 1.01 * low) {
       const double middle = std::sqrt(low * high);
-      (n_tets(middle) > kTetsOfThinBody ? low : high) = middle;
+      (n_tets(middle) > kTetsOfThinShape ? low : high) = middle;
     }
     h = high;
   }

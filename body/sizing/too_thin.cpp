@@ -14,7 +14,7 @@ namespace umtet {
 namespace {
 
 // psi is followed in steps of this many edges, to a little beyond kLeastEdgesAcross.
-constexpr double kStep = .125, kReach = kLeastEdgesAcross + 2 * kStep;
+constexpr double kSheetStep = .125, kSheetReach = kLeastEdgesAcross + 2 * kSheetStep;
 // Places listed in an error.
 constexpr std::size_t kListed = 5;
 
@@ -61,8 +61,8 @@ void collect(const Domain& domain, const Samples& samples, bool is_gap, const Co
   // Detail that is cut away at this h is there again at a smaller one.
   std::vector<double> with_detail = thin.thickness;
   if (domain.fitted) {
-    const auto d =
-        sheet_distances(domain.fitted->whole(), thin.points, kStep * h, kReach * h, context, domain.steepest());
+    const auto d = sheet_distances(domain.fitted->whole(), thin.points, kSheetStep * h, kSheetReach * h, context,
+                                   domain.steepest());
     for (std::size_t i = 0; i < d.size(); ++i) {
       with_detail[i] = std::min(with_detail[i], is_gap ? d[i].gap : d[i].body);
     }
@@ -70,7 +70,7 @@ void collect(const Domain& domain, const Samples& samples, bool is_gap, const Co
   for (const std::vector<int>& members : members_of(clusters(thin.points, h / 2))) {
     ThinPlace place;
     place.is_gap = is_gap;
-    place.thickness = kReach * h;
+    place.thickness = kSheetReach * h;
     std::vector<std::pair<double, double>> spectrum;
     for (const int i : members) {
       place.area += thin.area[i];
@@ -112,7 +112,8 @@ ThinPlaces find_thin_places(const Domain& domain, const ZeroSetChoice& pieces, d
   result.h = h;
   Samples samples = samples_of(pieces);
   const std::vector<double> scale(samples.points.size(), h);
-  const std::vector<SheetDistances> distances = body_sheets(domain, samples.points, scale, kStep, kReach, context);
+  const std::vector<SheetDistances> distances =
+      body_sheets(domain, samples.points, scale, kSheetStep, kSheetReach, context);
   samples.thickness.resize(distances.size());
   for (const bool is_gap : {false, true}) {
     std::transform(distances.begin(), distances.end(), samples.thickness.begin(),

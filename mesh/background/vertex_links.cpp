@@ -21,13 +21,13 @@ namespace {
 
 // Link vertices are put in an order by their places around the vertex, to within this part of its edge length: the
 // same order wherever the mesh looks the same, whatever rounding or optimisation has done to the places.
-constexpr double kParts = 8;
+constexpr double kOrderParts = 8;
 // Edge lengths of one type differ by a 64th of an octave at most, one percent.
 constexpr float kStepsPerOctave = 64;
 // A type with so many vertices for each state that its masks may have gets a table of them: then few of them are
 // computed in vain.
 constexpr std::size_t kStatesPerVertex = 4;
-constexpr int kMostInTable = 16;
+constexpr int kMostTabulated = 16;
 constexpr std::int64_t kVerticesPerTask = 1 << 10;  // of a microsecond or two each
 
 using TriangleOfLink = std::array<std::uint8_t, 3>;
@@ -130,7 +130,7 @@ void Links::read(std::int64_t v) {
   }
   mean_edge_ = ids_.empty() ? 0 : sum / static_cast<double>(ids_.size());
   for (std::size_t k = 0; k < ids_.size(); ++k) {
-    const Vec3 d = edges_[k] * (kParts / mean_edge_);
+    const Vec3 d = edges_[k] * (kOrderParts / mean_edge_);
     ordered_.push_back({place_in_order(d), static_cast<std::uint32_t>(k)});
   }
   std::sort(ordered_.begin(), ordered_.end());
@@ -319,7 +319,7 @@ void Lister::find_types(const std::vector<std::size_t>& begin, const std::vector
     for (const TriangleOfLink& t : link.triangles) {
       for (int a = 0; a < 3; ++a) link.adjacent[t[a]] |= LinkMask{1} << t[(a + 1) % 3] | LinkMask{1} << t[(a + 2) % 3];
     }
-    if (link.n > kMostInTable || link.n == 0 || uses[k] * kStatesPerVertex < std::size_t{1} << link.n) return;
+    if (link.n > kMostTabulated || link.n == 0 || uses[k] * kStatesPerVertex < std::size_t{1} << link.n) return;
     link.states.resize(std::size_t{1} << link.n);
     tbb::parallel_for(std::size_t{0}, link.states.size(), [&](std::size_t m) { link.states[m] = link.find_state(m); });
   });

@@ -25,7 +25,7 @@ constexpr double kMostRelaxation = 8;
 constexpr int kDescentEvaluations = 10;
 
 /// psi at an iterate, in the frame of its normal.
-struct Foot {
+struct IterateFoot {
   double step = 0;  ///< psi / |grad psi|: the distance to the boundary, to first order
   double norm = 0;  ///< |grad psi|
   Vec3 w;           ///< grad psi / |grad psi|
@@ -33,8 +33,8 @@ struct Foot {
   bool usable = false;
 };
 
-inline Foot foot_at(double value, const Vec3& gradient, const Vec3& to_x) {
-  Foot f;
+inline IterateFoot foot_at(double value, const Vec3& gradient, const Vec3& to_x) {
+  IterateFoot f;
   f.norm = gradient.norm();
   f.usable = f.norm > 0 && std::isfinite(f.norm) && std::isfinite(value);
   if (!f.usable) return f;
@@ -50,7 +50,7 @@ ClosestPoint paper(ImplicitFunctionRef psi, const Vec3& x, double length, const 
   while (result.iterations < params.max_iterations) {
     const double value = psi.value(result.point, gradient);
     ++result.iterations;
-    const Foot f = foot_at(value, gradient, x - result.point);
+    const IterateFoot f = foot_at(value, gradient, x - result.point);
     if (!f.usable) return result;
     const double t = result.t - f.step;  // 3.8(a)(ii): J = grad psi . w = |grad psi|
     const Vec3 next = x + t * f.w;
@@ -66,7 +66,7 @@ ClosestPoint paper(ImplicitFunctionRef psi, const Vec3& x, double length, const 
 
 /// The step z along the surface from E^T (I + mu H) E z = E^T r, E an orthonormal basis of the tangent plane and r the
 /// residual at y plus what the normal step -step w adds to it.
-Vec3 newton_slide(const Foot& f, const Mat3& hessian, const Vec3& to_x) {
+Vec3 newton_slide(const IterateFoot& f, const Mat3& hessian, const Vec3& to_x) {
   const double mu = to_x.dot(f.w) / f.norm;  // least squares for y - x + mu grad psi = 0
   const Vec3 e1 = f.w.unitOrthogonal(), e2 = f.w.cross(e1);
   const Vec3 He1 = hessian * e1, He2 = hessian * e2;
@@ -97,7 +97,7 @@ ClosestPoint damped_or_newton(ImplicitFunctionRef psi, const Vec3& x, double len
     const double value = newton ? psi.value(result.point, gradient, hessian) : psi.value(result.point, gradient);
     ++result.iterations;
     const Vec3 to_x = x - result.point;
-    const Foot f = foot_at(value, gradient, to_x);
+    const IterateFoot f = foot_at(value, gradient, to_x);
     if (!f.usable) return result;
     result.t = -to_x.dot(f.w);
     const double slide_norm = f.slide.norm();
@@ -131,7 +131,7 @@ bool land(ImplicitFunctionRef psi, double tol, double length, Vec3& y, int& eval
   for (int it = 0; it < 30; ++it) {
     const double value = psi.value(y, gradient);
     ++evaluations;
-    const Foot f = foot_at(value, gradient, Vec3::Zero());
+    const IterateFoot f = foot_at(value, gradient, Vec3::Zero());
     if (!f.usable) return false;
     if (std::abs(f.step) <= tol * length) return true;
     y -= std::clamp(f.step, -length, length) * f.w;
@@ -152,7 +152,7 @@ ClosestPoint descend(ImplicitFunctionRef psi, const Vec3& x, double length, cons
     const Vec3 to_x = x - result.point;
     const double value = newton ? psi.value(result.point, gradient, hessian) : psi.value(result.point, gradient);
     ++result.iterations;
-    const Foot f = foot_at(value, gradient, to_x);
+    const IterateFoot f = foot_at(value, gradient, to_x);
     if (!f.usable) return result;
     result.t = -to_x.dot(f.w);
     if (f.slide.norm() <= params.foot_tol * length) {

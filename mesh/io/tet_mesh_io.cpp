@@ -9,6 +9,7 @@
 
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/quality_report.h"
+#include "mesh/core/used_vertices.h"
 #include "mesh/io/detail/mesh_formats.h"
 
 namespace umtet {
@@ -115,27 +116,13 @@ void take_mid_sides(const std::filesystem::path& path, MeshFile& file, const std
 }
 
 void drop_unused_vertices(MeshFile& file) {
-  std::vector<int> new_index(file.mesh.V.size(), -1);
-  for (const Tet& t : file.mesh.C) {
-    for (const int v : t) new_index[v] = 0;
-  }
-  std::vector<std::size_t> kept;
-  for (std::size_t v = 0; v < new_index.size(); ++v) {
-    if (new_index[v] < 0) continue;
-    new_index[v] = static_cast<int>(kept.size());
-    kept.push_back(v);
-  }
-  if (kept.size() == file.mesh.V.size()) return;
-  file.n_unused_vertices = file.mesh.V.size() - (file.quadratic ? file.quadratic->V.size() : kept.size());
-  const auto keep = [&](auto& values) {
-    for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
-    values.resize(kept.size());
-  };
-  keep(file.mesh.V);
-  for (auto& [name, values] : file.point_data) std::visit(keep, values);
-  for (Tet& t : file.mesh.C) {
-    for (int& v : t) v = new_index[v];
-  }
+  const UsedVertices used(file.mesh.C, file.mesh.V.size());
+  const auto n = static_cast<std::size_t>(used.n());
+  if (n == file.mesh.V.size()) return;
+  file.n_unused_vertices = file.mesh.V.size() - (file.quadratic ? file.quadratic->V.size() : n);
+  used.keep(file.mesh.V);
+  for (auto& [name, values] : file.point_data) std::visit([&](auto& of_points) { used.keep(of_points); }, values);
+  for (Tet& t : file.mesh.C) used.renumber(t);
 }
 
 MeshFile assemble(const std::filesystem::path& path, NumberedMesh&& numbered) {

@@ -23,7 +23,7 @@ constexpr double kWidest = .5;
 constexpr double kSame = 1 + 1e-9, kLimited = .95;
 
 /// A cube with the values at its corners; corner k is at the low end of axis a where bit a of k is 0.
-struct Cube {
+struct SizeCube {
   Vec3 low;
   double width;
   std::array<double, 8> h;
@@ -36,7 +36,7 @@ class Sampling {
       : f_(f), grade_(grade), h_min_(h_min), h_max_(h_max), context_(context) {}
 
   std::vector<SizeSource> ends() {
-    for (std::vector<Cube> cubes = coarse(); !cubes.empty(); cubes = halved(at_ends(cubes))) add_lower_ends(cubes);
+    for (std::vector<SizeCube> cubes = coarse(); !cubes.empty(); cubes = halved(at_ends(cubes))) add_lower_ends(cubes);
     return tree_.sources();
   }
 
@@ -46,7 +46,7 @@ class Sampling {
     return std::isnan(h) ? h_max_ : std::clamp(h, h_min_, h_max_);
   }
 
-  std::vector<Cube> coarse() const {
+  std::vector<SizeCube> coarse() const {
     const double width = f_.box.sizes().maxCoeff() / kCubes;
     const Eigen::Array3i n = (f_.box.sizes().array() / width - 1e-9).ceil().cast<int>().max(1);
     const Eigen::Array3i m = n + 1;
@@ -60,12 +60,12 @@ class Sampling {
         for (int i = 0; i < m.x(); ++i) values[at(i, j, z)] = value(f_.box.min() + width * Vec3(i, j, z));
       });
     });
-    std::vector<Cube> cubes;
+    std::vector<SizeCube> cubes;
     cubes.reserve(static_cast<std::size_t>(n.prod()));
     for (int k = 0; k < n.z(); ++k) {
       for (int j = 0; j < n.y(); ++j) {
         for (int i = 0; i < n.x(); ++i) {
-          Cube& c = cubes.emplace_back(Cube{f_.box.min() + width * Vec3(i, j, k), width, {}});
+          SizeCube& c = cubes.emplace_back(SizeCube{f_.box.min() + width * Vec3(i, j, k), width, {}});
           for (int v = 0; v < 8; ++v) c.h[v] = values[at(i + (v & 1), j + ((v >> 1) & 1), k + (v >> 2))];
         }
       }
@@ -74,9 +74,9 @@ class Sampling {
   }
 
   /// Corners from which f rises too steeply to another one, into the tree.
-  void add_lower_ends(const std::vector<Cube>& cubes) {
+  void add_lower_ends(const std::vector<SizeCube>& cubes) {
     std::vector<SizeSource> ends = tree_.sources();
-    for (const Cube& c : cubes) {
+    for (const SizeCube& c : cubes) {
       const auto [least, most] = std::minmax_element(c.h.begin(), c.h.end());
       if (*most - *least <= kSeen * grade_ * c.width) continue;
       for (int a = 0; a < 8; ++a) {
@@ -93,31 +93,31 @@ class Sampling {
   }
 
   /// Those with a corner that limits what is around it, if they are not small enough.
-  std::vector<Cube> at_ends(const std::vector<Cube>& cubes) const {
+  std::vector<SizeCube> at_ends(const std::vector<SizeCube>& cubes) const {
     std::vector<std::uint8_t> is_end(cubes.size());
     polled_parallel_for(cubes.size(), kValuesPerPoll, context_, [&](std::size_t i) {
-      const Cube& c = cubes[i];
+      const SizeCube& c = cubes[i];
       if (c.width <= kWidest * *std::min_element(c.h.begin(), c.h.end())) return;
       for (int v = 0; v < 8 && is_end[i] == 0; ++v) {
         const double at = tree_.at(c.corner(v), h_min_, kSame * c.h[v]);
         is_end[i] = at >= kLimited * c.h[v] && at <= c.h[v] ? 1 : 0;
       }
     });
-    std::vector<Cube> ends;
+    std::vector<SizeCube> ends;
     for (std::size_t i = 0; i < cubes.size(); ++i) {
       if (is_end[i]) ends.push_back(cubes[i]);
     }
     return ends;
   }
 
-  std::vector<Cube> halved(const std::vector<Cube>& cubes) const {
-    std::vector<Cube> halves(8 * cubes.size());
+  std::vector<SizeCube> halved(const std::vector<SizeCube>& cubes) const {
+    std::vector<SizeCube> halves(8 * cubes.size());
     polled_parallel_for(cubes.size(), kValuesPerPoll / 27, context_, [&](std::size_t i) {
       const double width = cubes[i].width / 2;
       std::array<double, 27> h{};
       for (int k = 0; k < 27; ++k) h[k] = value(cubes[i].low + width * Vec3(k % 3, (k / 3) % 3, k / 9));
       for (int c = 0; c < 8; ++c) {
-        Cube& half = halves[8 * i + c];
+        SizeCube& half = halves[8 * i + c];
         half = {cubes[i].low + width * Vec3(c & 1, (c >> 1) & 1, c >> 2), width, {}};
         for (int v = 0; v < 8; ++v) {
           half.h[v] = h[(c & 1) + (v & 1) + 3 * (((c >> 1) & 1) + ((v >> 1) & 1)) + 9 * ((c >> 2) + (v >> 2))];

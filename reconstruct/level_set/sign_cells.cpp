@@ -58,9 +58,9 @@ double second_derivative_bound(const LmeTables& tables, bool at_walls) {
   return kMargin * (second + 2 * first * first);
 }
 
-class Search {
+class CellSearch {
  public:
-  Search(const LevelSet& psi, int depth);
+  CellSearch(const LevelSet& psi, int depth);
   // Adds the cubes of depth `depth_` in a cube of `depth`; at depth 0, a cell of the coarsest lattice.
   void search(int depth, const Eigen::Vector3i& cell, std::vector<Eigen::Vector3i>& found) const;
 
@@ -81,7 +81,7 @@ class Search {
   std::vector<std::vector<Range>> block_range_;  // of the coefficients in each block of each band
 };
 
-Search::Search(const LevelSet& psi, int depth)
+CellSearch::CellSearch(const LevelSet& psi, int depth)
     : psi_(psi),
       depth_(depth),
       R_(psi.tables().half_width()),
@@ -98,7 +98,7 @@ Search::Search(const LevelSet& psi, int depth)
   }
 }
 
-Search::LevelInCell Search::level_in_cell(int level, const Eigen::Vector3i& cell) const {
+CellSearch::LevelInCell CellSearch::level_in_cell(int level, const Eigen::Vector3i& cell) const {
   const Lattice& L = psi_.lattice(level);
   CoefficientWindow<float> of_band{};
   if (level > 0) of_band = psi_.band_window(level, cell);
@@ -118,7 +118,7 @@ Search::LevelInCell Search::level_in_cell(int level, const Eigen::Vector3i& cell
 }
 
 // The sum of all levels finer than a cube of `depth` in that cube.
-Range Search::finer_levels(int depth, const Vec3& low, const Vec3& high) const {
+Range CellSearch::finer_levels(int depth, const Vec3& low, const Vec3& high) const {
   Range sum;
   for (int level = depth + 1; level < psi_.n_levels(); ++level) {
     const LatticeBlocks& blocks = psi_.band(level).blocks;
@@ -144,7 +144,7 @@ Range Search::finer_levels(int depth, const Vec3& low, const Vec3& high) const {
 
 // A cell of the coarsest lattice far from any zero: a sum of functions that are >= 0 and sum to one lies between the
 // least and the greatest coefficient. Most cells end here, before their second derivatives are looked at.
-bool Search::has_one_sign(const Eigen::Vector3i& cell) const {
+bool CellSearch::has_one_sign(const Eigen::Vector3i& cell) const {
   const Range c = simd::dispatch_width(
       2 * R_, [&](auto W) { return rest_of<W.value>(psi_.coarsest_window(cell), 0, Vec3::Zero()); });
   if (c.low <= 0 && c.high >= 0) return false;
@@ -155,7 +155,7 @@ bool Search::has_one_sign(const Eigen::Vector3i& cell) const {
 }
 
 // @param bend  bound of the second derivatives of the levels coarser than the cube
-void Search::split(int depth, const Eigen::Vector3i& cell, double bend, std::vector<Eigen::Vector3i>& found) const {
+void CellSearch::split(int depth, const Eigen::Vector3i& cell, double bend, std::vector<Eigen::Vector3i>& found) const {
   const Lattice& L = psi_.coarsest().lattice;
   const double edge = std::ldexp(L.h, -depth);
   const LevelInCell finest = depth < psi_.n_levels() ? level_in_cell(depth, cell) : LevelInCell();
@@ -192,7 +192,7 @@ void Search::split(int depth, const Eigen::Vector3i& cell, double bend, std::vec
   }
 }
 
-void Search::search(int depth, const Eigen::Vector3i& cell, std::vector<Eigen::Vector3i>& found) const {
+void CellSearch::search(int depth, const Eigen::Vector3i& cell, std::vector<Eigen::Vector3i>& found) const {
   if (depth == 0 && has_one_sign(cell)) return;
   double bend = 0;
   for (int level = 0; level < std::min(depth, psi_.n_levels()); ++level) {
@@ -221,7 +221,7 @@ void sort_by_place(std::vector<Eigen::Vector3i>& cells) {
 SignCells sign_cells(const LevelSet& psi, double size) {
   const Lattice& L = psi.coarsest().lattice;
   const int depth = depth_of(psi, size);
-  const Search search(psi, depth);
+  const CellSearch search(psi, depth);
   const Eigen::Vector3i n = (L.n.array() - 1).matrix();
   std::vector<std::vector<Eigen::Vector3i>> layers(n[2]);
   tbb::parallel_for(0, n[2], [&](int k) {
@@ -240,7 +240,7 @@ SignCells sign_cells_within(const LevelSet& psi, const SignCells& cells, const s
   if (cells.origin != L.origin || cells.size != std::ldexp(L.h, -from) || depth < from) {
     throw std::invalid_argument("no cubes of this size within cubes of that");
   }
-  const Search search(psi, depth);
+  const CellSearch search(psi, depth);
   std::vector<std::vector<Eigen::Vector3i>> found(which.size());
   tbb::parallel_for(std::size_t{0}, which.size(),
                     [&](std::size_t i) { search.search(from, cells.cells.at(which[i]), found[i]); });

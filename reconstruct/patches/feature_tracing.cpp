@@ -1,6 +1,5 @@
 #include "reconstruct/patches/feature_tracing.h"
 
-#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "reconstruct/cloud/neighbours/neighbour_tree.h"
+#include "reconstruct/patches/patch_zero_sets.h"
 
 namespace umtet {
 namespace {
@@ -26,18 +26,14 @@ constexpr double kCornerMoves = 3.5;  // from a sample nearby to the corner, at 
 constexpr double kHasSamples = 3;     // every patch of a corner has samples within this distance: more in acute corners
 constexpr double kHasSeeds = 2;       // a curve goes on while it has seeds within this distance
 constexpr double kSameCorner = 1;     // two corners are one
-constexpr double kStep = .3;          // along a curve
+constexpr double kCurveStep = .3;     // along a curve
 constexpr double kTouches = .1;       // a curve and a corner
 constexpr double kSameCurve = .6;     // a seed is on a curve that has been traced
 constexpr double kFromCorner = 1;     // a seed nearer to a corner may be beyond the end of its curve
 constexpr double kShort = .2;         // the same for curves between two corners near each other
 constexpr double kToCorner = 3;  // a curve that breaks off within this distance of a corner of its patches ends there
-constexpr double kArrived = 1e-11;
-constexpr int kMostNewton = 30, kHalvings = 6;
-constexpr double kMostTurn = .966;       // cosine: 15 degrees a step
-constexpr double kParallel = 1e-3;       // sine of the angle of two patches
-constexpr double kFlat = .05;            // determinant of three normals that define a corner
-constexpr std::size_t kMostPatches = 8;  // of a corner
+constexpr int kHalvings = 6;
+constexpr double kMostTurn = .966;  // cosine: 15 degrees a step
 constexpr std::size_t kPerPoll = 256;
 
 /// Points of the curves along a sharp border, each from two samples.
@@ -54,7 +50,7 @@ struct Seeds {
 class PatchTracer {
  public:
   PatchTracer(const std::vector<Vec3>& points, const SamplePatches& patches, const std::vector<PatchFit>& fits)
-      : points_(points), patches_(patches), fits_(fits), s_(patches.spacing), tree_(points) {
+      : points_(points), patches_(patches), zero_sets_(fits, patches.spacing), s_(patches.spacing), tree_(points) {
     for (const SamplePatches::Border& b : patches.borders)
       if (b.sharp && b.a != b.b) borders_[std::minmax(b.a, b.b)];
   }
@@ -72,44 +68,6 @@ class PatchTracer {
   }
 
  private:
-  /// f_p / |grad f_p|, and the unit gradient.
-  double distance(int p, const Vec3& x, Vec3& normal) const {
-    const double f = fits_[p].evaluate(x, &normal, nullptr), slope = normal.norm();
-    normal /= slope;
-    return f / slope;
-  }
-
-  /// Gauss and Newton's method to f_p = 0 for all patches, by the shortest steps. \return whether it converges, and the
-  /// normals are not nearly in a plane (on a line)
-  template <class Patches>
-  bool correct(const Patches& patches, Vec3& x, double farthest, double* off = nullptr) const {
-    const auto n = static_cast<Eigen::Index>(patches.size());
-    const Vec3 start = x;
-    Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 2 * kMostPatches, 3> J(n, 3);
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 * kMostPatches, 1> f(n);
-    for (int k = 0; k < kMostNewton; ++k) {
-      for (Eigen::Index i = 0; i < n; ++i) {
-        Vec3 normal;
-        f[i] = distance(patches[static_cast<std::size_t>(i)], x, normal);
-        J.row(i) = normal.transpose();
-      }
-      if (!f.allFinite() || !J.allFinite()) return false;
-      const auto svd = J.jacobiSvd(Eigen::ComputeThinU | Eigen::ComputeThinV);
-      const double least = svd.singularValues()[std::min<Eigen::Index>(n, 3) - 1];
-      if (!(least > (n == 2 ? kParallel : kFlat))) return false;
-      Vec3 step = -svd.solve(f);
-      if (step.norm() > s_) step *= s_ / step.norm();
-      x += step;
-      if ((x - start).norm() > farthest) return false;
-      // Of more than three equations the residual is left; the method converges to it linearly.
-      if (step.norm() <= (n > 3 ? 1e-6 : kArrived) * s_) {
-        if (off) *off = f.cwiseAbs().maxCoeff();
-        return true;
-      }
-    }
-    return false;
-  }
-
   bool has_samples(int patch, const Vec3& x, double within) const {
     bool has = false;
     tree_.within(x, within * within * s_ * s_, [&](std::uint32_t i, double) { has |= patches_.patch[i] == patch; });
@@ -128,7 +86,7 @@ class PatchTracer {
         if (n.distance2 < square(kHasSamples * s_)) near.push_back(patches_.patch[n.point]);
       std::sort(near.begin(), near.end());
       near.erase(std::unique(near.begin(), near.end()), near.end());
-      if (near.size() < 3 || near.size() > kMostPatches) continue;
+      if (near.size() < 3 || near.size() > kMostPatchesAtCorner) continue;
       for (std::size_t a = 0; a < near.size(); ++a)
         for (std::size_t b = a + 1; b < near.size(); ++b)
           for (std::size_t c = b + 1; c < near.size(); ++c) try_corner({near[a], near[b], near[c]}, points_[i], found);
@@ -142,7 +100,7 @@ class PatchTracer {
       if (std::equal(triple.begin(), triple.end(), c.patches.begin()) && (c.place - from).norm() < kCornerMoves * s_)
         return;
     Vec3 x = from;
-    if (!correct(triple, x, kCornerMoves * s_)) return;
+    if (!zero_sets_.correct(triple, x, kCornerMoves * s_)) return;
     for (const int p : triple)
       if (!has_samples(p, x, kHasSamples)) return;
     if (curves_at(triple, x) < 2) return;
@@ -181,13 +139,13 @@ class PatchTracer {
       }
       std::sort(corner.patches.begin(), corner.patches.end());
       corner.patches.erase(std::unique(corner.patches.begin(), corner.patches.end()), corner.patches.end());
-      if (corner.patches.size() > kMostPatches) continue;
+      if (corner.patches.size() > kMostPatchesAtCorner) continue;
       const Vec3 mean = corner.place;
-      if (!correct(corner.patches, corner.place, 2 * s_, &corner.off)) {
+      if (!zero_sets_.correct(corner.patches, corner.place, 2 * s_, &corner.off)) {
         corner.place = mean;
         for (const int p : corner.patches) {
           Vec3 normal;
-          corner.off = std::max(corner.off, std::abs(distance(p, mean, normal)));
+          corner.off = std::max(corner.off, std::abs(zero_sets_.distance(p, mean, normal)));
         }
       }
       made_.corners.push_back(std::move(corner));
@@ -207,9 +165,10 @@ class PatchTracer {
         const auto border = borders_.find({a, b});
         if (border == borders_.end()) continue;
         Vec3 x = (points_[i] + points_[n.point]) / 2, normal;
-        if (!correct(std::array{a, b}, x, kSeedMoves * s_)) continue;
+        if (!zero_sets_.correct(std::array{a, b}, x, kSeedMoves * s_)) continue;
         border->second.places.push_back(x);
-        border->second.depth.push_back(-distance(a, points_[n.point], normal) - distance(b, points_[i], normal));
+        border->second.depth.push_back(-zero_sets_.distance(a, points_[n.point], normal) -
+                                       zero_sets_.distance(b, points_[i], normal));
       }
     }
     for (auto& [pair, seeds] : borders_)
@@ -238,7 +197,7 @@ class PatchTracer {
         std::optional<TracedCurve> curve = curve_through(pair, seeds.places[k], seeds, least == kShort);
         if (!curve) continue;
         curve->is_convex = mark(*curve, seeds, is_done) > 0;
-        for (const Vec3& x : curve->points) curve->angle_deg.push_back(angle_deg(pair, x, curve->is_convex));
+        for (const Vec3& x : curve->points) curve->angle_deg.push_back(zero_sets_.angle_deg(pair, x, curve->is_convex));
         made_.curves.push_back(std::move(*curve));
       }
     }
@@ -257,24 +216,6 @@ class PatchTracer {
       depth += seeds.depth[k];
     }
     return depth;
-  }
-
-  double angle_deg(const std::array<int, 2>& pair, const Vec3& x, bool is_convex) const {
-    Vec3 a, b;
-    distance(pair[0], x, a);
-    distance(pair[1], x, b);
-    const double turn = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
-    return is_convex ? 180 - turn : 180 + turn;
-  }
-
-  std::optional<Vec3> tangent(const std::array<int, 2>& pair, const Vec3& x) const {
-    Vec3 a, b;
-    distance(pair[0], x, a);
-    distance(pair[1], x, b);
-    const Vec3 t = a.cross(b);
-    const double sine = t.norm();
-    if (!(sine > kParallel)) return std::nullopt;
-    return Vec3(t / sine);
   }
 
   /// The curve through a seed. @param needs_corners  whether a curve that does not end at two corners is none
@@ -312,15 +253,15 @@ class PatchTracer {
     const std::size_t most = 20 * (seeds.places.size() + 100);
     while (points.size() < most) {
       const Vec3 x = points.back();
-      const std::optional<Vec3> along = tangent(pair, x);
+      const std::optional<Vec3> along = zero_sets_.tangent(pair, x);
       if (!along) return {};
       Vec3 next;
-      double step = kStep * s_;
+      double step = kCurveStep * s_;
       bool is_found = false;
       for (int halving = 0; halving < kHalvings && !is_found; ++halving, step /= 2) {
         next = x + direction * step * *along;
-        if (!correct(pair, next, step)) continue;
-        const std::optional<Vec3> there = tangent(pair, next);
+        if (!zero_sets_.correct(pair, next, step)) continue;
+        const std::optional<Vec3> there = zero_sets_.tangent(pair, next);
         is_found = there && there->dot(*along) > kMostTurn && (next - x).dot(*along) * direction > step / 2;
       }
       if (!is_found) return {};
@@ -332,7 +273,7 @@ class PatchTracer {
       }
       if (!seeds.has_within(kHasSeeds * s_, next)) return {};
       length += (next - x).norm();
-      if (direction > 0 && length > 3 * kStep * s_ && comes_back(x, next, start)) {
+      if (direction > 0 && length > 3 * kCurveStep * s_ && comes_back(x, next, start)) {
         if ((start - next).dot(next - x) > .2 * (next - x).squaredNorm()) points.push_back(next);
         points.push_back(start);
         return {-1, true};
@@ -400,8 +341,8 @@ class PatchTracer {
       }
       left = std::move(others);
       TracedCorner joint{mean / static_cast<double>(group.size()), {patches.begin(), patches.end()}};
-      if (patches.size() < 3 || patches.size() > kMostPatches ||
-          !correct(joint.patches, joint.place, kCornerMoves * s_, &joint.off)) {
+      if (patches.size() < 3 || patches.size() > kMostPatchesAtCorner ||
+          !zero_sets_.correct(joint.patches, joint.place, kCornerMoves * s_, &joint.off)) {
         made_.broken.insert(made_.broken.end(), group.begin(), group.end());
         continue;
       }
@@ -459,7 +400,7 @@ class PatchTracer {
 
   const std::vector<Vec3>& points_;
   const SamplePatches& patches_;
-  const std::vector<PatchFit>& fits_;
+  PatchZeroSets zero_sets_;
   const double s_;
   const NeighbourTree tree_;
   std::map<std::pair<int, int>, Seeds> borders_;  ///< the sharp ones, by ascending pairs of patches

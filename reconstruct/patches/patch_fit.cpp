@@ -27,16 +27,16 @@ constexpr double kNormalWeight = 1;
 // The energy of second derivatives decides what a plane leaves open, such as z^2: small beside every lambda.
 constexpr double kEpsilon = 1e-4;
 constexpr int kRings = 1;  // of cells around those with samples; two take four times as long and are no better
-constexpr std::size_t kNeighbours = 12;
+constexpr std::size_t kFitNeighbours = 12;
 // The 90th percentile of |mean| of normal numbers, and the spread of this percentile over patches: the means of m
 // samples count as about m / 6 independent ones, and 1.8 standard deviations of theirs leave no plane out.
 constexpr double kPercentile = 1.645, kSpread = 2.7, kIndependent = 6;
-constexpr double kFloor = .01;  // in s: a smaller misfit needs no explanation
+constexpr double kMisfitFloor = .01;  // in s: a smaller misfit needs no explanation
 // A quadric explains the samples of a plane no better than by chance: the F statistic of its six more coefficients
 // exceeds 4 in one of a thousand.
 constexpr double kMostF = 4, kFFloor = 1e-6;
 // Curvatures of a quadric, in 1 / s, that are expected where the samples do not tell.
-constexpr double kCurvature = .05, kLeastNoise = .02;
+constexpr double kCurvature = .05, kLeastFitNoise = .02;
 // A sample is no part of the patch if it is off by this many robust standard deviations, and by this part of s.
 constexpr double kOutlier = 5, kOutlierOff = .5;
 constexpr double kLeastSlope = 1e-3;  // of f at a sample
@@ -110,7 +110,7 @@ Quadric fit_quadric(const Scaled& at) {
     A += w * d * d.transpose();
     b += w * R * d * at.n[i];
   }
-  const double sigma = std::max(at.noise, kLeastNoise);
+  const double sigma = std::max(at.noise, kLeastFitNoise);
   const double ridge = sigma * sigma / (kCurvature * kCurvature) / std::pow(R, 4);
   for (int k = 4; k < 10; ++k) A(k, k) += (k < 7 ? 1 : 2) * ridge;
   const Row q = A.ldlt().solve(b);
@@ -211,14 +211,14 @@ struct PatchFit::Parts {
     const auto at90 = mean.begin() + static_cast<std::ptrdiff_t>(mean.size() * 9 / 10);
     std::nth_element(mean.begin(), at90, mean.end());
     const double allowed = kPercentile * (1 + kSpread * std::sqrt(kIndependent / m));
-    misfit = *at90 / (allowed * std::sqrt(variance / n + square(kFloor)));
+    misfit = *at90 / (allowed * std::sqrt(variance / n + square(kMisfitFloor)));
     return misfit <= 1;
   }
 
   void fit() {
     tree.emplace(at.x);
     std::optional<Neighbourhoods> some;
-    if (at.x.size() > kNeighbours) some.emplace(*tree, kNeighbours - 1);
+    if (at.x.size() > kFitNeighbours) some.emplace(*tree, kFitNeighbours - 1);
     const Neighbourhoods* near = some ? &*some : nullptr;
     const double m = static_cast<double>(at.x.size());
     kind = Kind::Plane;
@@ -231,7 +231,7 @@ struct PatchFit::Parts {
     quadric = fit_quadric(at);
     const bool is_quadric = judge(near);
     const double of_quadric = sum_of_squares();
-    if (is_plane && of_plane - of_quadric <= 6 * kMostF * (of_quadric / (m - kNeighbours) + kFFloor)) {
+    if (is_plane && of_plane - of_quadric <= 6 * kMostF * (of_quadric / (m - kFitNeighbours) + kFFloor)) {
       kind = Kind::Plane;
       quadric = plane;
       judge(near);

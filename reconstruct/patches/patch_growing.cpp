@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <queue>
 #include <span>
 #include <tuple>
@@ -15,7 +14,6 @@
 namespace umtet {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kLinks = 8;   ///< neighbours that must agree with a core: one ring of samples
 constexpr std::size_t kFewest = 8;  ///< cores of a region: a quadric has six coefficients
 /// Turn of normals between neighbours of a smooth region, per spacing, or per link if it is shorter. A cylinder with a

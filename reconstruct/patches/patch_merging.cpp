@@ -13,13 +13,12 @@
 namespace umtet {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSmooth = 25 * kDegree;  ///< mean turn of a border that is no edge
 constexpr double kSharp = 30 * kDegree;   ///< turn of a stretch that is one
 constexpr std::size_t kStretch = 6;       ///< sites of such a stretch
-constexpr double kStep = .5;              ///< spacings between sheets that do not continue each other, ...
+constexpr double kSheetStep = .5;         ///< spacings between sheets that do not continue each other, ...
 constexpr double kStepDeviations = 3;     ///< ... or deviations of positions: two sheets are off by less than one
-constexpr double kTogether = 2.5;         ///< spacings between two sites of a stretch: beyond the second ring
+constexpr double kStretchGap = 2.5;       ///< spacings between two sites of a stretch: beyond the second ring
 
 /// The angle between the sheets of both patches at a site, pi if they pass each other like the sides of a step, and -1
 /// if one of them is too small to have a sheet.
@@ -27,7 +26,7 @@ double turn_at(const PatchCloud& cloud, const std::vector<int>& labels, const Bo
   const auto a = sheet_near(cloud, labels, site.a, site.i), b = sheet_near(cloud, labels, site.b, site.i);
   if (!a || !b) return -1;
   const Vec3 x = cloud.middle(site);
-  if (std::abs(a->distance(x) - b->distance(x)) > std::max(kStep, kStepDeviations * cloud.noise))
+  if (std::abs(a->distance(x) - b->distance(x)) > std::max(kSheetStep, kStepDeviations * cloud.noise))
     return std::numbers::pi;
   return angle_between(a->normal(x), b->normal(x));
 }
@@ -53,7 +52,7 @@ bool has_sharp_stretch(const PatchCloud& cloud, std::span<const BorderSite> site
   for (std::size_t k = 0; k < sites.size(); ++k)
     if (turns[k] > kSharp) sharp.push_back(sites[k]);
   if (sharp.size() < kStretch) return false;
-  const std::vector<std::size_t> size = network_sizes(cloud, sharp, std::vector<char>(sharp.size(), 1), kTogether);
+  const std::vector<std::size_t> size = network_sizes(cloud, sharp, std::vector<char>(sharp.size(), 1), kStretchGap);
   return *std::max_element(size.begin(), size.end()) >= kStretch;
 }
 

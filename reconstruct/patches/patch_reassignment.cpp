@@ -10,12 +10,12 @@
 namespace umtet {
 namespace {
 
-constexpr int kRounds = 3;
-constexpr std::size_t kAround = 24;     ///< a sample with another label among so many neighbours is near a border
-constexpr std::size_t kNeighbours = 8;  ///< of the Potts term
-constexpr double kPotts = .5;           ///< per neighbour of another patch
-constexpr double kMost = 50;            ///< of each residual squared: seven deviations are an outlier of any patch
-constexpr double kMostFiltered = 1;     ///< for normals that are estimated from the same positions
+constexpr int kPottsRounds = 3;
+constexpr std::size_t kNearBorder = 24;      ///< a sample with another label among so many neighbours is near a border
+constexpr std::size_t kPottsNeighbours = 8;  ///< of the Potts term
+constexpr double kPotts = .5;                ///< per neighbour of another patch
+constexpr double kMost = 50;                 ///< of each residual squared: seven deviations are an outlier of any patch
+constexpr double kMostFiltered = 1;          ///< for normals that are estimated from the same positions
 /// Standard deviation of a filtered normal that is compared with a sheet's: what curvature and filter leave, radians.
 constexpr double kFiltered = 8 * std::numbers::pi / 180;
 
@@ -32,7 +32,7 @@ std::vector<Candidate> candidates_of(const PatchCloud& cloud, const std::vector<
     found.push_back({label, std::numeric_limits<double>::infinity()});
   };
   add(labels[i]);
-  for (const std::uint32_t j : cloud.nearest(i, kAround)) add(labels[j]);
+  for (const std::uint32_t j : cloud.nearest(i, kNearBorder)) add(labels[j]);
   if (found.size() == 1) return found;
   const bool is_measured = cloud.has_measured_normals();
   const double deviation = is_measured ? cloud.tilt : kFiltered;
@@ -53,7 +53,7 @@ int best_of(const PatchCloud& cloud, const std::vector<int>& labels, const std::
   double least = std::numeric_limits<double>::infinity();
   for (const Candidate& c : found) {
     double cost = c.cost;
-    for (const std::uint32_t j : cloud.nearest(i, kNeighbours)) cost += labels[j] == c.label ? 0 : kPotts;
+    for (const std::uint32_t j : cloud.nearest(i, kPottsNeighbours)) cost += labels[j] == c.label ? 0 : kPotts;
     if (cost < least) {
       least = cost;
       best = c.label;
@@ -67,7 +67,7 @@ int best_of(const PatchCloud& cloud, const std::vector<int>& labels, const std::
 std::size_t reassign_at_borders(const PatchCloud& cloud, std::vector<int>& labels) {
   const std::vector<int> before = labels;
   std::vector<std::vector<Candidate>> found(cloud.size());
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kPottsRounds; ++round) {
     tbb::parallel_for(std::size_t{0}, cloud.size(), [&](std::size_t i) { found[i] = candidates_of(cloud, labels, i); });
     for (std::size_t i = 0; i < cloud.size(); ++i)
       if (found[i].size() > 1) labels[i] = best_of(cloud, labels, found[i], i);

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "common/formatted.h"
 #include "reconstruct/patches/edge_acceptance.h"
 #include "reconstruct/patches/filtered_normals.h"
+#include "reconstruct/patches/measures.h"
 #include "reconstruct/patches/patch_growing.h"
 #include "reconstruct/patches/patch_merging.h"
 #include "reconstruct/patches/patch_reassignment.h"
@@ -17,12 +17,11 @@
 namespace umtet {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 /// Spacings, and radians: quadrics leave as much of curved patches without noise, such as a hole with a radius of 4
 /// spacings.
 constexpr double kLeastNoise = .02, kLeastTilt = 2 * kDegree;
-constexpr int kRounds = 2;        ///< of reassignment and merging
-constexpr int kMostMergers = 20;  ///< rounds of merging: a bound on the time, not reached on parts
+constexpr int kReassignments = 2;  ///< of reassignment and merging
+constexpr int kMostMergers = 20;   ///< rounds of merging: a bound on the time, not reached on parts
 /// Largest ratio of the misfits of a part: parts of the tests have at most 1.07, fandisk 1.11, organic scans 2 and
 /// more.
 constexpr double kPart = 1.15;
@@ -95,7 +94,7 @@ void check(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, do
 std::vector<int> smooth_patches(PatchCloud& cloud) {
   std::vector<int> labels = grow_patches(cloud.points, cloud.normals, cloud.near);
   cloud.noise = std::max(kLeastNoise, patch_misfit(cloud, labels).noise);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kReassignments; ++round) {
     reassign_at_borders(cloud, labels);
     for (int k = 0; k < kMostMergers && merge_smooth_borders(cloud, labels); ++k) {
     }

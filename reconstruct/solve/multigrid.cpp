@@ -14,23 +14,24 @@ namespace umtet {
 
 namespace {
 
-constexpr std::ptrdiff_t kChunk = 1 << 14;
+constexpr std::ptrdiff_t kValuesInChunk = 1 << 14;
 
 // f(begin, end) over fixed chunks of [0, n).
 template <class F>
 void for_chunks(std::ptrdiff_t n, F&& f) {
-  const std::ptrdiff_t chunks = (n + kChunk - 1) / kChunk;
-  tbb::parallel_for(std::ptrdiff_t{0}, chunks, [&](std::ptrdiff_t c) { f(c * kChunk, std::min(n, (c + 1) * kChunk)); });
+  const std::ptrdiff_t chunks = (n + kValuesInChunk - 1) / kValuesInChunk;
+  tbb::parallel_for(std::ptrdiff_t{0}, chunks,
+                    [&](std::ptrdiff_t c) { f(c * kValuesInChunk, std::min(n, (c + 1) * kValuesInChunk)); });
 }
 
 // Sum of term(i), by chunk, chunks in order: the same bits for any number of threads.
 template <class F>
 double sum_of(std::ptrdiff_t n, F&& term) {
-  std::vector<double> partial((n + kChunk - 1) / kChunk);
+  std::vector<double> partial((n + kValuesInChunk - 1) / kValuesInChunk);
   for_chunks(n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     double sum = 0;
     for (std::ptrdiff_t i = begin; i < end; ++i) sum += term(i);
-    partial[begin / kChunk] = sum;
+    partial[begin / kValuesInChunk] = sum;
   });
   double sum = 0;
   for (const double p : partial) sum += p;
@@ -43,7 +44,7 @@ double dot(std::ptrdiff_t n, const double* a, const double* b) {
 
 // Cubes in which samples are merged for the preconditioner, in spacings. Larger ones make it too unlike the operator,
 // and PCG takes more iterations; smaller ones merge little.
-constexpr double kMergeCube = 0.5;
+constexpr double kPreconditionerCube = 0.5;
 
 // f(o, begin, end) for columns begin .. end - 1 of each of `outer` planes of `inner` columns.
 template <class F>
@@ -168,7 +169,7 @@ Multigrid::Multigrid(const SsdOperator& finest, int n_levels) {
         samples[i].w_gradient /= 4;
       });
     }
-    std::vector<SsdSample> means = merge_samples(samples, kMergeCube);
+    std::vector<SsdSample> means = merge_samples(samples, kPreconditionerCube);
     if (coarser || means.size() < samples.size() / 2) samples = std::move(means);
     Level level{SsdOperator(finest.tables(), n, kappa, samples), {}, 0, {}, {}, {}, {}, {}};
     levels_.push_back(std::move(level));

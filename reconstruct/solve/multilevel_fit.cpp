@@ -14,14 +14,14 @@ namespace umtet {
 
 namespace {
 
-constexpr int kNodes = LatticeBlocks::kNodes;
-using Block = Eigen::Array<float, kNodes, 1>;
+constexpr int kBlockNodes = LatticeBlocks::kNodes;
+using Block = Eigen::Array<float, kBlockNodes, 1>;
 
 Eigen::Map<Block> block(std::vector<float>& v, int b) {
-  return Eigen::Map<Block>(v.data() + static_cast<std::size_t>(b) * kNodes);
+  return Eigen::Map<Block>(v.data() + static_cast<std::size_t>(b) * kBlockNodes);
 }
 Eigen::Map<const Block> block(const std::vector<float>& v, int b) {
-  return Eigen::Map<const Block>(v.data() + static_cast<std::size_t>(b) * kNodes);
+  return Eigen::Map<const Block>(v.data() + static_cast<std::size_t>(b) * kBlockNodes);
 }
 
 // Jacobi-PCG from zero; returns the solution.
@@ -69,7 +69,7 @@ std::vector<SsdSample> resolved_samples(std::vector<SsdSample> samples, double m
   const auto in_block = [](const Eigen::Vector3i& c) { return c[0] % 8 + 8 * (c[1] % 8) + 64 * (c[2] % 8); };
   const std::vector<std::size_t> runs = block_runs(samples);
   const std::size_t n_runs = runs.size() - 1;
-  std::vector<std::bitset<kNodes>> resolved(n_runs);
+  std::vector<std::bitset<kBlockNodes>> resolved(n_runs);
   tbb::parallel_for(std::size_t{0}, n_runs, [&](std::size_t run) {
     for (std::size_t i = runs[run]; i < runs[run + 1]; ++i) {
       const SsdSample& s = samples[i];

@@ -11,7 +11,7 @@ namespace umtet {
 namespace {
 
 // As ClosingPlan has it of cells that no sample shows.
-constexpr double kFarWeight = 1e-3;
+constexpr double kWallWeight = 1e-3;
 constexpr int kWallSamples = 16;  // along each edge of a face
 
 }  // namespace
@@ -43,7 +43,7 @@ std::vector<SsdSample> wall_samples(const Lattice& lattice, const std::vector<Ss
         const Vec3 x(i + .5, j + .5, k + .5);
         std::array<Neighbour, 1> room;
         const double distance = std::sqrt(tree.k_nearest(x, room).front().distance2);
-        samples.push_back({x, Vec3::Zero(), kFarWeight, 0, distance});
+        samples.push_back({x, Vec3::Zero(), kWallWeight, 0, distance});
       }
     }
   }

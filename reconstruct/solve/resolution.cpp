@@ -11,7 +11,7 @@ namespace {
 
 // The finest spacing is 1.25 S, S the distance between samples, and at least three times the noise. A finer lattice
 // follows single samples and their noise, a coarser one loses detail.
-constexpr double kSpacings = 1.25, kNoises = 3;
+constexpr double kSampleSpacings = 1.25, kNoises = 3;
 // A lattice coarser than the mesh is made as fine as it, but by no more than this factor: the spacing stays above S.
 constexpr double kFiner = 1.2;
 // Outside a sharp edge there are no samples, and a weak c lets psi fall below 0 there: a false piece of surface. A
@@ -30,8 +30,8 @@ constexpr double kFinestSpacings = .5;
 
 Resolution choose_resolution(double sample_spacing, double mesh_edge, double noise, double detail, double smooth,
                              double least) {
-  const double of_samples =
-      std::max(least, std::clamp(mesh_edge, kSpacings / kFiner * sample_spacing, kSpacings * sample_spacing));
+  const double of_samples = std::max(
+      least, std::clamp(mesh_edge, kSampleSpacings / kFiner * sample_spacing, kSampleSpacings * sample_spacing));
   Resolution r;
   r.noise_decides = kNoises * noise > of_samples;
   r.spacing = (r.noise_decides ? kNoises * noise : of_samples) / detail;

@@ -17,7 +17,7 @@ namespace umtet {
 namespace {
 
 // The default h is 1.5 % of the diagonal: two or three samples an edge show what such a mesh can.
-constexpr double kOfDiagonal = .006;
+constexpr double kSpacingOfDiagonal = .006;
 // A fit of so many takes some minutes; more only if they are asked for.
 constexpr double kMostSamples = 1e6;
 // 250 bytes each, and as much again in the fit.
@@ -290,7 +290,7 @@ std::vector<std::string> problems(const BodySampleParams& params) {
 double default_spacing(const TriangleMesh& mesh) {
   const double area = area_of(mesh);
   const double n_corners = static_cast<double>(mesh.F.size()) / 2;
-  const double spacing = std::min(kOfDiagonal * diagonal_of(mesh), std::sqrt(area / n_corners));
+  const double spacing = std::min(kSpacingOfDiagonal * diagonal_of(mesh), std::sqrt(area / n_corners));
   return std::max(spacing, std::sqrt(area / kMostSamples));
 }
 

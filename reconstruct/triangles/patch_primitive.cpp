@@ -17,7 +17,7 @@ constexpr double kCylinder = 1e-4;
 // |n . a| of a cone is between that of 3 and of 87 degrees: others are cylinders or planes.
 constexpr double kLeastCone = .05, kMostCone = .9986;
 
-double area_of(const TriangleMesh& patch) {
+double patch_area(const TriangleMesh& patch) {
   double area = 0;
   for (std::size_t f = 0; f < patch.F.size(); ++f) area += patch.area_vector(f).norm();
   return area;
@@ -26,14 +26,14 @@ double area_of(const TriangleMesh& patch) {
 Vec3 centre_of(const TriangleMesh& patch) {
   Vec3 centre = Vec3::Zero();
   for (std::size_t f = 0; f < patch.F.size(); ++f) centre += patch.area_vector(f).norm() * patch.centroid(f);
-  return centre / area_of(patch);
+  return centre / patch_area(patch);
 }
 
 /// None where normals cancel, as all around a cylinder.
 std::optional<PatchPrimitive> plane_of(const TriangleMesh& patch) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t f = 0; f < patch.F.size(); ++f) sum += patch.area_vector(f);
-  if (!(sum.norm() > kOneFacet * area_of(patch))) return std::nullopt;
+  if (!(sum.norm() > kOneFacet * patch_area(patch))) return std::nullopt;
   PatchPrimitive plane;
   plane.axis = sum.normalized();
   plane.point = centre_of(patch);

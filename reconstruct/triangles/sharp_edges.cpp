@@ -25,9 +25,9 @@ constexpr double kFlatTurn = 1;
 // two edges of an equilateral triangle are at 60 degrees.
 constexpr double kLikeTurn = 2, kLikeDistance = 3, kLeastCos = .49;
 // Another edge is beside an edge, not further along its curve, if it is farther than 30 degrees from its direction.
-constexpr double kBeside = .5;
+constexpr double kBesideSine = .5;
 // The facets of a curved surface consist of few triangles; this bounds the work at a plane of many.
-constexpr std::size_t kMostTriangles = 16;
+constexpr std::size_t kMostInFacet = 16;
 // A staircase: the least number of its edges, their largest mean length as a share of the diagonal, half of the default
 // edge length of meshes with sharp edges, and the share of its vertices that turn back.
 constexpr std::size_t kFewestStairs = 12;
@@ -169,12 +169,12 @@ std::vector<double> Finder::like_distances(std::size_t e, int triangle) const {
       if (std::abs(ratio) < 1 / kLikeTurn) {
         const int next = other.left == facet[n] ? other.right : other.left;
         const bool is_known = std::find(facet.begin(), facet.end(), next) != facet.end();
-        if (!is_known && facet.size() < kMostTriangles) facet.push_back(next);
+        if (!is_known && facet.size() < kMostInFacet) facet.push_back(next);
         continue;
       }
       const Vec3 to = (at(other.a) + at(other.b)) / 2 - middle;
       const double distance = to.cross(along).norm();
-      const bool is_beside = distance > kBeside * to.norm();
+      const bool is_beside = distance > kBesideSine * to.norm();
       const bool runs_alike = std::abs((at(other.b) - at(other.a)).normalized().dot(along)) > kLeastCos;
       if (is_beside && runs_alike && ratio > 0 && ratio <= kLikeTurn) found.push_back(distance);
     }

@@ -15,9 +15,9 @@ namespace umtet {
 namespace {
 
 // Triangles beside which the winding number is asked, evenly picked.
-constexpr std::size_t kAsked = 1000;
+constexpr std::size_t kAskedTriangles = 1000;
 // Of the diagonal: far above rounding, far below a gap that shows.
-constexpr double kBeside = 1e-6;
+constexpr double kStepBeside = 1e-6;
 // The tree is off by .005 on average, and cracks of T-junctions cover less of the directions than this.
 constexpr double kWhole = .03;
 
@@ -66,8 +66,8 @@ std::size_t n_corners(const TriangleMesh& mesh, const std::vector<int>& corner,
 /// Whether w falls from 1 to 0 across triangles, as far as some of them tell.
 bool winds_once(const TriangleMesh& mesh, const Context& context) {
   const TriangleWinding w(mesh);
-  const double step = kBeside * diagonal_of(mesh);
-  const std::size_t every = (mesh.F.size() + kAsked - 1) / kAsked;
+  const double step = kStepBeside * diagonal_of(mesh);
+  const std::size_t every = (mesh.F.size() + kAskedTriangles - 1) / kAskedTriangles;
   std::vector<Vec3> before, behind;
   for (std::size_t f = every / 2; f < mesh.F.size(); f += every) {
     const Vec3 n = step * mesh.area_vector(f).normalized();

@@ -14,9 +14,9 @@ namespace umtet {
 namespace {
 
 // Numbers of triangles have 32 bits.
-constexpr std::size_t kMostTriangles = std::size_t{1} << 31;
+constexpr std::size_t kMostSummed = std::size_t{1} << 31;
 // Triangles of a leaf, at most: a series costs as much as one of them.
-constexpr std::uint32_t kLeaf = 4;
+constexpr std::uint32_t kSummedLeaf = 4;
 // A node is a series from so many times its radius on: 2 is the choice of [Barill2018].
 constexpr double kBeta = 2;
 
@@ -32,7 +32,7 @@ double solid_angle_share(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3
 
 TriangleWinding::TriangleWinding(const TriangleMesh& mesh) {
   const std::size_t n = mesh.F.size();
-  if (n == 0 || n >= kMostTriangles)
+  if (n == 0 || n >= kMostSummed)
     throw std::invalid_argument(formatted("%zu triangles: must be at least one, below 2^31", n));
   triangles_.resize(n);
   for (std::size_t f = 0; f < n; ++f) {
@@ -40,7 +40,7 @@ TriangleWinding::TriangleWinding(const TriangleMesh& mesh) {
         mesh.centroid(f), {mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)}, static_cast<std::uint32_t>(f)};
   }
   nodes_.reserve(n);
-  grow_sample_tree(triangles_, nodes_, kLeaf, 0, static_cast<std::uint32_t>(n));
+  grow_sample_tree(triangles_, nodes_, kSummedLeaf, 0, static_cast<std::uint32_t>(n));
   tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t i) { find_moments(nodes_[i]); });
 }
 

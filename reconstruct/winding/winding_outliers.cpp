@@ -12,7 +12,7 @@ namespace umtet {
 namespace {
 
 // w is 0 outside, 1/2 at samples of a smooth surface, between .1 and .9 at edges and corners of boxes and at rims.
-constexpr double kOff = .4;
+constexpr double kOutlierOff = .4;
 // Of the distance to the fourth: in white noise on a surface it is 2.5 times the median at one sample in 10^7.
 constexpr std::size_t kFourth = 3;
 constexpr double kApart = 2.5, kApartFromAll = 4;
@@ -71,7 +71,7 @@ std::vector<std::uint8_t> winding_outliers(const OrientedPointCloud& cloud, cons
   if (apart.empty() || 2 * apart.size() > cloud.points.size()) return is_outlier;
   const FastWindingNumber w = winding_number_without(cloud, apart);
   tbb::parallel_for(std::size_t{0}, apart.size(), [&](std::size_t k) {
-    is_outlier[apart[k]] = std::abs(w(cloud.points[apart[k]]) - .5) > kOff ? 1 : 0;
+    is_outlier[apart[k]] = std::abs(w(cloud.points[apart[k]]) - .5) > kOutlierOff ? 1 : 0;
   });
   return is_outlier;
 }

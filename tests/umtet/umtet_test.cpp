@@ -20,8 +20,11 @@
 #include "pipeline/reports/certificate_report.h"
 #include "pipeline/reports/stage_reports.h"
 #include "pipeline/run/run.h"
+#include "reconstruct/io/grid_io.h"
+#include "reconstruct/io/image_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 #include "reconstruct/io/triangle_mesh_io.h"
+#include "reconstruct/level_set/grid_fit.h"
 #include "tests/reconstruct/triangles/solids.h"
 #include "tests/support/clouds.h"
 
@@ -263,6 +266,33 @@ TEST(Umtet, TheCertificateOfAFormulaIsThatOfTheProgram) {
   options.box = Box(Vec3::Constant(-1.4), Vec3::Constant(1.4));
   options.body.mesh.h = .1;
   const Mesh mesh = mesh_body(Expression(ellipsoid), options);
+  EXPECT_EQ(measured_by(mesh).dump(1), program.dump(1));
+  EXPECT_EQ(mesh.verdict.word(), "pass");
+}
+
+TEST(Umtet, TheCertificateOfAGridIsThatOfTheProgram) {
+  const Folder folder;
+  const fs::path file = folder.path / "psi.vti";
+  Image image{{41, 37, 33}, {-1.4, -1.26, -1.12}, Vec3::Constant(.07), {{"psi", {}}}};
+  for (int k = 0; k < image.n[2]; ++k) {
+    for (int j = 0; j < image.n[1]; ++j) {
+      for (int i = 0; i < image.n[0]; ++i) {
+        const Vec3 x = image.origin + image.spacing.cwiseProduct(Vec3(i, j, k));
+        image.values[0].second.push_back(static_cast<float>(.6 * (x.cwiseQuotient(Vec3(1, .8, .6)).norm() - 1)));
+      }
+    }
+  }
+  write_image(file, image);
+  RunRequest request;
+  request.from = Stage::Mesh;
+  request.parameters.set("mesh.level_set", file.string(), ParamSource::Flag, "test");
+  request.parameters.set("mesh.h", ".12", ParamSource::Flag, "test");
+  const Json program = measured_by_program(folder.path, request);
+  const GridLevelSet psi = interpolate(read_grid(file));
+  Options options;
+  options.box = psi.box();
+  options.body.mesh.h = .12;
+  const Mesh mesh = mesh_body(psi, options);
   EXPECT_EQ(measured_by(mesh).dump(1), program.dump(1));
   EXPECT_EQ(mesh.verdict.word(), "pass");
 }
