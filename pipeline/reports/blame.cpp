@@ -12,6 +12,8 @@ namespace {
 
 // A fit tolerates a few wrong normals; a patch with this share of them is a separate wall in psi.
 constexpr double kManyWrong = .05;
+// Share of neighbouring pairs whose normals agree; noise and sharp edges alone do not reduce it below this value.
+constexpr double kLeastConsistent = .9;
 // In units of h: sizes decrease until the noise is .3 of an edge (kMostNoise), or halfway there.
 constexpr double kNoisy = .15;
 // In units of h: from this value on, the mesh shows the noise of the samples.
@@ -117,6 +119,21 @@ Blame blame_of_psi(const MeshMeasures& m) {
 }
 
 }  // namespace
+
+Blame blame_for_failure(Stage at_work, const std::string& message, const std::optional<InputFacts>& facts) {
+  if (at_work != Stage::Cloud) {
+    MeshMeasures m;
+    m.input = facts;
+    if (auto blame = blame_of_normals(m)) return *blame;
+    if (facts && facts->consistency < kLeastConsistent) {
+      return {"normals", fmt::format("{:.0f} % of the normals agree with their neighbours", 100 * facts->consistency),
+              facts->normals_given ? "--normals estimate, or normals that all look outward"
+                                   : "a cloud with normals, or --orient-from FILE with the positions of the scanner"};
+    }
+  }
+  const char* stage = at_work == Stage::Cloud ? "input" : at_work == Stage::LevelSet ? "level set" : "mesh";
+  return {stage, message.substr(0, message.find('\n')), ""};
+}
 
 Blame blame_for(const Certificate& c) {
   const MeshMeasures& m = c.measured;
