@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <sstream>
 
 #include "pipeline/case/exit_code.h"
@@ -15,7 +14,6 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/output/boundary_patches.h"
-#include "pipeline/output/detail/report_sources.h"
 #include "pipeline/output/report_defects.h"
 #include "pipeline/output/report_page.h"
 #include "pipeline/output/report_plot.h"
@@ -186,21 +184,6 @@ std::string patch_settings(const Parameters& parameters) {
                                parameters.output().patch_angle, parameters.output().patch_planar));
 }
 
-std::string blocks_text(const std::vector<std::pair<std::string, std::string>>& blocks) {
-  std::string text;
-  for (const auto& [name, base64] : blocks)
-    text += fmt::format("<script type=\"text/plain\" id=\"block-{}\">{}</script>\n", name, base64);
-  return text;
-}
-
-/// @param parts  the placeholders besides those of the program
-void write_page(const CasePaths& paths, std::map<std::string, std::string> parts) {
-  parts.insert({{"css", std::string(report_page_css())},
-                {"js", fmt::format("{}{}{}", report_scenes_js(), report_view_js(), report_viewer_js())},
-                {"three", std::string(report_three_js())}});
-  write_text_artefact(paths.report(), filled(report_page_html(), parts));
-}
-
 /// Returns why there is no mesh, and the stage to blame.
 std::string failure_list(const std::optional<CaseFailure>& failure, const Json& blame) {
   if (!failure) return "<ul class=\"reasons\">\n<li>There is no mesh yet: umtet run continues the case.</li>\n</ul>";
@@ -242,25 +225,26 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
   stop_if_interrupted();
   std::erase_if(scene.blocks, [](const auto& block) { return block.first == "points"; });  // a layer of the strip
   const CertificateRun run = run_of(certificate);
-  write_page(paths, {{"checksum", run.checksum},
-                     {"patch_settings", patch_settings(parameters)},
-                     {"title", title_of(paths)},
-                     {"verdict", certificate.verdict.word()},
-                     {"verdict_mark", " data-certificate=\"/verdict\""},
-                     {"made", html_text(fmt::format("umtet {} · {}", certificate.version, run.date))},
-                     {"reasons", reason_list(certificate)},
-                     {"checks", check_list(certificate)},
-                     {"cards", headline_cards(certificate)},
-                     {"shown", shown_text(scene.head)},
-                     {"places", defect_table(certificate)},
-                     {"holes", hole_table(certificate)},
-                     {"missed", missed_table(certificate)},
-                     {"figures", figures.figures},
-                     {"tables", figures.tables},
-                     {"certificate", script_json(to_json(certificate))},
-                     {"scene", script_json(to_json(scene.head))},
-                     {"strip", script_json(strip.document)},
-                     {"blocks", blocks_text(scene.blocks) + blocks_text(strip.blocks)}});
+  write_text_artefact(paths.report(),
+                      report_page({{"checksum", run.checksum},
+                                   {"patch_settings", patch_settings(parameters)},
+                                   {"title", title_of(paths)},
+                                   {"verdict", certificate.verdict.word()},
+                                   {"verdict_mark", " data-certificate=\"/verdict\""},
+                                   {"made", html_text(fmt::format("umtet {} · {}", certificate.version, run.date))},
+                                   {"reasons", reason_list(certificate)},
+                                   {"checks", check_list(certificate)},
+                                   {"cards", headline_cards(certificate)},
+                                   {"shown", shown_text(scene.head)},
+                                   {"places", defect_table(certificate)},
+                                   {"holes", hole_table(certificate)},
+                                   {"missed", missed_table(certificate)},
+                                   {"figures", figures.figures},
+                                   {"tables", figures.tables},
+                                   {"certificate", script_json(to_json(certificate))},
+                                   {"scene", script_json(to_json(scene.head))},
+                                   {"strip", script_json(strip.document)},
+                                   {"blocks", blocks_text(scene.blocks) + blocks_text(strip.blocks)}}));
 }
 
 void write_unfinished_report(const CasePaths& paths, const Parameters& parameters) {
@@ -274,25 +258,15 @@ void write_unfinished_report(const CasePaths& paths, const Parameters& parameter
   const std::optional<CaseFailure> failure = read_failure(paths);
   const StageStrip strip = stage_strip({paths, parameters, domain ? &*domain : nullptr, nullptr, failure});
   stop_if_interrupted();
-  write_page(paths, {{"checksum", ""},
-                     {"patch_settings", ""},
-                     {"title", title_of(paths)},
-                     {"verdict", failure ? "fail" : "not finished"},
-                     {"verdict_mark", ""},
-                     {"made", html_text(fmt::format("umtet {}", kVersion))},
-                     {"reasons", failure_list(failure, strip.document.at("blame"))},
-                     {"checks", ""},
-                     {"cards", ""},
-                     {"shown", "There is no mesh."},
-                     {"places", ""},
-                     {"holes", ""},
-                     {"missed", ""},
-                     {"figures", ""},
-                     {"tables", stage_table(records) + parameter_table(read_text(paths.parameters()))},
-                     {"certificate", "null"},
-                     {"scene", "null"},
-                     {"strip", script_json(strip.document)},
-                     {"blocks", blocks_text(strip.blocks)}});
+  write_text_artefact(paths.report(),
+                      report_page({{"title", title_of(paths)},
+                                   {"verdict", failure ? "fail" : "not finished"},
+                                   {"made", html_text(fmt::format("umtet {}", kVersion))},
+                                   {"reasons", failure_list(failure, strip.document.at("blame"))},
+                                   {"shown", "There is no mesh."},
+                                   {"tables", stage_table(records) + parameter_table(read_text(paths.parameters()))},
+                                   {"strip", script_json(strip.document)},
+                                   {"blocks", blocks_text(strip.blocks)}}));
 }
 
 bool report_is_of(const CasePaths& paths, const Certificate& certificate, const Parameters& parameters) {

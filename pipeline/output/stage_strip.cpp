@@ -14,6 +14,7 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/defect_files.h"
 #include "pipeline/output/detail/scene_blocks.h"
+#include "pipeline/output/detail/triangle_scene.h"
 #include "pipeline/output/stage_layers.h"
 #include "pipeline/reports/blame.h"
 #include "pipeline/reports/stage_reports.h"
@@ -146,31 +147,8 @@ std::vector<std::string> StripMaker::marks() const {
 void StripMaker::draw_triangles(Picture& picture, const std::vector<Vec3>& V, const std::vector<Triangle>& F,
                                 const Vec3& shift) {
   if (F.empty()) return;
-  std::vector<detail::FacedTet> faces;
-  for (const Triangle& f : F) faces.push_back({f[0], f[1], f[2], f[0]});
-  Box box;
-  for (const Vec3& x : V) box.extend(x);
-  SceneHead head;
-  head.n_faces = faces.size();
-  if (faces.size() > kStageCaps.faces) detail::coarsen_faces(V, box.min(), kStageCaps.faces, faces);
-  head.n_faces_shown = faces.size();
-  std::vector<int> id(V.size(), -1);
-  std::vector<Vec3> shown;
-  for (detail::FacedTet& f : faces) {
-    for (int k = 0; k < 3; ++k) {
-      if (id[f[k]] < 0) {
-        id[f[k]] = static_cast<int>(shown.size());
-        shown.push_back(V[f[k]] + shift);
-      }
-    }
-    f = {id[f[0]], id[f[1]], id[f[2]], id[f[0]]};
-  }
-  head.box_min = box.min() + shift;
-  head.box_size = box.sizes();
-  head.index_bytes = detail::index_bytes_for(shown.size());
-  put_scene(picture, head,
-            {{"positions", detail::position_block(shown, head.box_min, head.box_size)},
-             {"faces", detail::index_block(faces, head.index_bytes)}});
+  ReportScene scene = detail::triangle_scene(V, F, shift, kStageCaps.faces);
+  put_scene(picture, scene.head, std::move(scene.blocks));
 }
 
 void StripMaker::draw_zero_set(Picture& picture) {
@@ -182,22 +160,9 @@ void StripMaker::draw_zero_set(Picture& picture) {
     return zero_surface(psi, domain.box, domain.diagonal / kCubesAcross, seeds, until_interrupted());
   });
   if (surface.F.empty()) return;
-  std::vector<detail::FacedTet> faces;
-  for (const auto& f : surface.F) faces.push_back({f[0], f[1], f[2], f[0]});
-  Box box;
-  for (const Vec3& x : surface.V) box.extend(x);
-  SceneHead head;
-  head.n_faces = head.n_faces_shown = faces.size();
-  head.box_min = box.min() + domain.shift;
-  head.box_size = box.sizes();
-  head.index_bytes = detail::index_bytes_for(surface.V.size());
-  std::vector<Vec3> positions;
-  for (const Vec3& x : surface.V) positions.push_back(x + domain.shift);
-  std::vector<std::pair<std::string, std::string>> blocks = {
-      {"positions", detail::position_block(positions, head.box_min, head.box_size)},
-      {"faces", detail::index_block(faces, head.index_bytes)}};
+  std::vector<detail::VertexField> fields;
+  std::vector<double> support(surface.V.size()), residual(surface.V.size());
   if (domain.has_samples()) {
-    std::vector<double> support(surface.V.size()), residual(surface.V.size());
     const NeighbourTree tree(domain.cloud.points);
     const std::vector<double> of_samples = residuals(domain, domain.cloud.points);
     polled_parallel_for(surface.V.size(), umtet::kValuesPerPoll, until_interrupted(), [&](std::size_t v) {
@@ -206,20 +171,20 @@ void StripMaker::draw_zero_set(Picture& picture) {
       support[v] = std::sqrt(nearest[0].distance2);
       residual[v] = of_samples[nearest[0].point];
     });
-    const double far = *std::max_element(support.begin(), support.end());
-    head.support = {0, far};
-    head.support_radius = support_radius(domain);
     double most = 0;
     for (const double r : residual)
       if (!std::isnan(r)) most = std::max(most, r);
-    head.fields.push_back({"residual of the nearest sample", {0, most}});
-    std::vector<std::uint8_t> in_support, in_residual;
-    for (std::size_t v = 0; v < surface.V.size(); ++v) {
-      in_support.push_back(detail::in_steps(support[v], 0, far));
-      in_residual.push_back(detail::in_known_steps(residual[v], 0, most));
-    }
-    blocks.emplace_back("vertex_support", detail::byte_block(in_support));
-    blocks.emplace_back("vertex_field_0", detail::byte_block(in_residual));
+    fields.push_back({"residual of the nearest sample", residual, {0, most}});
+  }
+  ReportScene scene = detail::triangle_scene(surface.V, surface.F, domain.shift, surface.F.size(), fields);
+  if (domain.has_samples()) {
+    const double far = *std::max_element(support.begin(), support.end());
+    scene.head.support = {0, far};
+    scene.head.support_radius = support_radius(domain);
+    std::vector<std::uint8_t> bytes;
+    for (const int v : detail::order_of_use(surface.F, surface.V.size()))
+      bytes.push_back(detail::in_steps(support[v], 0, far));
+    scene.blocks.emplace_back("vertex_support", detail::byte_block(bytes));
     picture.colour = "support";
   }
   if (domain.piecewise && domain.piecewise->graph) {
@@ -228,9 +193,10 @@ void StripMaker::draw_zero_set(Picture& picture) {
       for (std::size_t k = 0; k + 1 < curve.points.size(); ++k)
         ends.insert(ends.end(), {curve.points[k] + domain.shift, curve.points[k + 1] + domain.shift});
     }
-    if (!ends.empty()) blocks.emplace_back("curves", detail::position_block(ends, head.box_min, head.box_size));
+    if (!ends.empty())
+      scene.blocks.emplace_back("curves", detail::position_block(ends, scene.head.box_min, scene.head.box_size));
   }
-  put_scene(picture, head, std::move(blocks));
+  put_scene(picture, scene.head, std::move(scene.blocks));
 }
 
 void StripMaker::add_input() {

@@ -6,6 +6,7 @@
 
 #include "body/scan/cloud_preparation.h"
 #include "tests/support/clouds.h"
+#include "tests/support/sampled_domains.h"
 
 namespace umtet {
 namespace {
