@@ -91,15 +91,16 @@ bool write_diff_page(const fs::path& file, const CasePaths& a, const CasePaths& 
                                                {{"distance to the other boundary, model units", off[k], {0, most}}});
     for (auto& [name, text] : scene.blocks) blocks.emplace_back(id + "_" + name, std::move(text));
     const double far = *std::max_element(off[k].begin(), off[k].end());
-    stages.push_back({{"id", id},
-                      {"name", k == 0 ? diff.a : diff.b},
-                      {"facts", {{"farthest from the other boundary", fmt::format("{:.3g}", far)}}},
-                      {"seconds", nullptr},
-                      {"file", surface.file},
-                      {"command", ""},
-                      {"layers", Json::array()},
-                      {"colour", "field_0"},
-                      {"scene", to_json(scene.head)}});
+    stages.push_back(
+        {{"id", id},
+         {"name", k == 0 ? diff.a : diff.b},
+         {"facts", Json::array({Json::array({"farthest from the other boundary", fmt::format("{:.3g}", far)})})},
+         {"seconds", nullptr},
+         {"file", surface.file},
+         {"command", ""},
+         {"layers", Json::array()},
+         {"colour", "field_0"},
+         {"scene", to_json(scene.head)}});
   }
   const Json strip = {{"stages", stages}, {"layers", Json::array()}, {"blame", nullptr}, {"shown", "a"}};
   write_text_artefact(file, report_page({{"title", html_text(diff.a + " and " + diff.b)},

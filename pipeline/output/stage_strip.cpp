@@ -388,7 +388,6 @@ Json StripMaker::blame() const {
   if (cloud_record_) {
     const CloudReport report = cloud_report(*cloud_record_);
     facts = input_facts(report, fit_record_ ? level_set_report(*fit_record_) : LevelSetReport());
-    if (!report.normals.orientation) facts->consistency = report.normals.consistency;  // normals kept as they are given
   }
   const Blame blame = blame_for_failure(source_.failure->stage, source_.failure->message, facts);
   return {{"stage", stage_of_blame(blame.stage)}, {"number", blame.number}, {"remedy", blame.remedy}};

@@ -32,7 +32,7 @@
     stage.thumb.width = 200;
     stage.thumb.height = 136;
     element("b", stage.name, button);
-    element("span", isBlamed ? "cause of the failure" : stage.seconds !== null ? number(stage.seconds) + " s" : "", button);
+    element("span", isBlamed ? "cause of the failure" : stage.facts.some(([what]) => what === "no result") ? "no result" : stage.seconds !== null ? number(stage.seconds) + " s" : "", button);
     button.addEventListener("click", () => showStage(k));
     stage.button = button;
     $("beside").add(new Option(stage.name, stage.id));
@@ -128,7 +128,7 @@
       add(layer.id, layer.id === "samples" ? "samples of the cloud" : `${layer.name}: ${layer.n}`, layer.id === "samples" ? null : layer.colour);
       if (layer.id === "samples" && layer.normals) add("normals", "normals");
     }
-    $("layers").hidden = layers.length === 0;
+    $("layers-box").hidden = layers.length === 0;
   }
   function fillControls(stage) {
     fillColours(stage);
