@@ -9,6 +9,7 @@
 
 #include "pipeline/case/version.h"
 #include "pipeline/cli/detail/command_parser.h"
+#include "pipeline/cli/help_format.h"
 #include "pipeline/output/export_case.h"
 
 namespace umtet {
@@ -176,8 +177,8 @@ CommandParser::CommandParser() {
   add_fresh(exports, "take patches and names from this call alone, not from former calls");
 
   CLI::App& report =
-      add_command("report", make_report, "Write CASE/report.html: certificate, mesh and curves on one page, offline");
-  report.add_option("CASE", in_.input, "a case with a certificate")->required();
+      add_command("report", make_report, "Write CASE/report.html: certificate, stages and curves on one page, offline");
+  report.add_option("CASE", in_.input, "a case with at least one stage")->required();
 
   CLI::App& view =
       add_command("view", make_view, "Write CASE/5-view: psi on a grid, psi = 0 and a script for ParaView");
@@ -187,6 +188,8 @@ CommandParser::CommandParser() {
                                "Report the first stage in which two cases differ, and the differences of each stage");
   diff.add_option("CASE_A", in_.input, "first case")->required();
   diff.add_option("CASE_B", in_.other_case, "second case")->required();
+  diff.add_option("-o", in_.output, "page with the picture (default: diff.html in the second case)");
+  group_flags(app_);
 }
 
 void CommandParser::add_batch() {

@@ -297,6 +297,6 @@ Command make_report(const CLI::App&, const CommandInputs& in) { return ReportCom
 
 Command make_view(const CLI::App&, const CommandInputs& in) { return ViewCommand{in.input}; }
 
-Command make_diff(const CLI::App&, const CommandInputs& in) { return DiffCommand{in.input, in.other_case}; }
+Command make_diff(const CLI::App&, const CommandInputs& in) { return DiffCommand{in.input, in.other_case, in.output}; }
 
 }  // namespace umtet

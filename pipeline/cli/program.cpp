@@ -21,6 +21,7 @@
 #include "pipeline/meshing/check.h"
 #include "pipeline/meshing/part_mesher.h"
 #include "pipeline/output/case_diff.h"
+#include "pipeline/output/diff_page.h"
 #include "pipeline/output/export_case.h"
 #include "pipeline/output/inspect.h"
 #include "pipeline/output/inspect_formula.h"
@@ -50,6 +51,17 @@ std::string file_list(const std::vector<std::filesystem::path>& files) {
   std::string out;
   for (const auto& file : files) out += (out.empty() ? "files     " : "          ") + file.string() + "\n";
   return out;
+}
+
+/// Returns a line with the mesh, its report and the exports.
+std::string main_files(const RunRequest& request, const RunOutcome& outcome) {
+  const CasePaths paths{request.case_folder};
+  std::string line = "files     " + paths.mesh().string();
+  for (const auto& file : outcome.files) {
+    const bool is_export = file.parent_path() == paths.exports();
+    if (is_export || file == paths.report()) line += ", " + file.string();
+  }
+  return line + "\n";
 }
 
 Json names(const std::vector<std::filesystem::path>& files) {
@@ -121,8 +133,10 @@ Output Execution::operator()(RunCommand& command) const {
                      {"changed", outcome.changed},
                      {"files", names(outcome.files)},
                      {"certificate", outcome.certificate ? to_json(*outcome.certificate) : Json(nullptr)}};
-  if (outcome.certificate) output.text = summary(*outcome.certificate);
-  output.text += file_list(outcome.files);
+  if (options.verbosity == Verbosity::Quiet) return output;
+  const bool is_long = options.verbosity == Verbosity::Verbose;
+  if (outcome.certificate) output.text = is_long ? summary(*outcome.certificate) : short_summary(*outcome.certificate);
+  output.text += is_long || !outcome.certificate ? file_list(outcome.files) : main_files(request, outcome);
   return output;
 }
 
@@ -276,9 +290,15 @@ Output Execution::operator()(const ViewCommand& command) const {
 
 Output Execution::operator()(const DiffCommand& command) const {
   set_work_at_hand("diff");
-  const CaseDiff found = diff_cases({command.case_a}, {command.case_b}, progress);
+  const CasePaths a{command.case_a}, b{command.case_b};
+  const CaseDiff found = diff_cases(a, b, progress);
+  const std::filesystem::path page = command.page.empty() ? b.root / "diff.html" : command.page;
+  const bool is_drawn = write_diff_page(page, a, b, found);
   progress.clear();
-  return {ExitCode::Success, diff_text(found), {{"diff", to_json(found)}}};
+  const std::string text = diff_text(found, options.verbosity == Verbosity::Verbose);
+  return {ExitCode::Success,
+          is_drawn ? text + "picture: " + page.string() + "\n" : text,
+          {{"diff", to_json(found)}, {"picture", is_drawn ? Json(page.string()) : Json(nullptr)}}};
 }
 
 /// Applies the limits of memory and time to this process. The limits of a batch apply to its scans, which run in
