@@ -24,7 +24,7 @@ const std::vector<FlagGroup>& flag_groups() {
        {"--implicit",    "--clouds",         "--level-set", "--t",           "--skip",    "--against",   "--normals",
         "--orient-from", "--flip",           "--keep-all",  "--box",         "--columns", "--as-points", "--touching",
         "--features",    "--sample-spacing", "--part",      "--part-smooth", "--level",   "--above",     "--complement",
-        "--box-walls",   "--no-outside"}},
+        "--box-walls",   "--no-outside",     "--least",     "--periodic"}},
       {"Level set", {"--close", "--keep-open", "--edges", "--feature-angle", "--spacing", "--detail", "--smooth"}},
       {"Size",
        {"--h", "--tets", "--max-tets", "--background", "--size", "--size-at", "--h-min", "--h-max", "--grade",
