@@ -10,6 +10,7 @@
 #include "common/context.h"
 #include "common/vec3.h"
 #include "mesh/background/background_mesh.h"
+#include "mesh/regions/periodic_match.h"
 #include "mesh/regions/periodic_mesh.h"
 #include "mesh/regions/region_certificate.h"
 #include "mesh/regions/region_domain.h"

@@ -68,7 +68,7 @@ def inr_of(label, path):
 def of_gmsh(script, half, edge, folder):
     geo = folder / "regions.geo"
     geo.write_text(f"SetFactory('OpenCASCADE'); Box(1) = {{{-half},{-half},{-half}, {2 * half},{2 * half},{2 * half}}};\n"
-                   f"{script}\nBooleanFragments{{Volume{{1}}; Delete;}}{{Volume{{2:100}}; Delete;}}\n"
+                   f"{script}\no() = Volume{{:}}; o() -= {{1}}; BooleanFragments{{Volume{{1}}; Delete;}}{{Volume{{o()}}; Delete;}}\n"
                    "v() = Volume{:}; For k In {0:#v()-1} Physical Volume(k + 1) = {v(k)}; EndFor\n"
                    f"Mesh.CharacteristicLengthMin = {edge}; Mesh.CharacteristicLengthMax = {edge};\n")
     return timed(["gmsh", geo, "-3", "-algo", "hxt", "-optimize", "-optimize_threshold", "0.5", "-nt", "1", "-format",

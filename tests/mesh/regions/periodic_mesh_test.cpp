@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mesh/core/tet_quality.h"
+#include "mesh/regions/periodic_match.h"
 #include "mesh/regions/region_certificate.h"
 #include "tests/support/regions.h"
 
