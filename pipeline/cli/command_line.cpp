@@ -229,8 +229,8 @@ CLI::App& CommandParser::add_command(const char* name, CommandMaker make, const 
       .add_option("--threads", result_.options.threads,
                   "number of threads; results do not depend on it (default: all processors)")
       ->check(CLI::Range(1, 4096, "1 to 4096"));
-  command.add_flag("-q,--quiet", in_.quiet, "print only warnings and errors");
-  command.add_flag("-v,--verbose", in_.verbose, "print more messages");
+  command.add_flag("-q,--quiet", in_.quiet, "print only warnings and errors, no summary");
+  command.add_flag("-v,--verbose", in_.verbose, "print the whole summary, all files and more messages");
   command
       .add_option_function<std::string>(
           "--progress",

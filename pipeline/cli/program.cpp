@@ -133,7 +133,6 @@ Output Execution::operator()(RunCommand& command) const {
                      {"changed", outcome.changed},
                      {"files", names(outcome.files)},
                      {"certificate", outcome.certificate ? to_json(*outcome.certificate) : Json(nullptr)}};
-  if (options.verbosity == Verbosity::Quiet) return output;
   const bool is_long = options.verbosity == Verbosity::Verbose;
   if (outcome.certificate) output.text = is_long ? summary(*outcome.certificate) : short_summary(*outcome.certificate);
   output.text += is_long || !outcome.certificate ? file_list(outcome.files) : main_files(request, outcome);
@@ -345,7 +344,13 @@ Output execute(int argc, char** argv, const RanksOfProgram& ranks, bool& json, s
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(options.threads));
   keep_limits(call.command, options);
-  return std::visit(execution, call.command);
+  Output output = std::visit(execution, call.command);
+  // The answers of these commands are what they are called for; the others leave files.
+  const bool is_question = std::holds_alternative<InspectCommand>(call.command) ||
+                           std::holds_alternative<CheckCommand>(call.command) ||
+                           std::holds_alternative<DiffCommand>(call.command);
+  if (options.verbosity == Verbosity::Quiet && !is_question) output.text.clear();
+  return output;
 }
 
 /// Writes to stderr. If that fails, only the exit code reports the error. (fmt::print would throw.)

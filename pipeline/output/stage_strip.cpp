@@ -164,13 +164,14 @@ void StripMaker::draw_zero_set(Picture& picture) {
   std::vector<double> support(surface.V.size()), residual(surface.V.size());
   if (domain.has_samples()) {
     const NeighbourTree tree(domain.cloud.points);
-    const std::vector<double> of_samples = residuals(domain, domain.cloud.points);
+    std::vector<Vec3> nearest_samples(surface.V.size());
     polled_parallel_for(surface.V.size(), umtet::kValuesPerPoll, until_interrupted(), [&](std::size_t v) {
       std::array<Neighbour, 1> room;
       const auto nearest = tree.k_nearest(surface.V[v], room);
       support[v] = std::sqrt(nearest[0].distance2);
-      residual[v] = of_samples[nearest[0].point];
+      nearest_samples[v] = domain.cloud.points[nearest[0].point];
     });
+    residual = residuals(domain, nearest_samples);
     double most = 0;
     for (const double r : residual)
       if (!std::isnan(r)) most = std::max(most, r);

@@ -28,15 +28,14 @@ def output(*command):
 
 
 def flags_of(help_text):
-    """[(flag, argument, meaning)] of a help text; a meaning may begin on the next line."""
-    lines, found = help_text[help_text.index("Options:"):].split("\n"), []
-    for line, following in zip(lines, lines[1:] + [""]):
-        if not line.strip() and found:
-            break
+    """[(flag, argument, meaning)] of a help text; a meaning may begin or go on in the next lines."""
+    found = []
+    for line in help_text.split("\n"):
         if match := FLAG.match(line):
-            flag, argument, meaning = match.groups()
-            found.append((flag, argument.strip(), meaning or following.strip()))
-    return found
+            found.append([match[1], match[2].strip(), match[3]])
+        elif line.startswith(" " * 26) and found:
+            found[-1][2] = f"{found[-1][2]} {line.strip()}".strip()
+    return [tuple(flag) for flag in found]
 
 
 def parameters(umtet):

@@ -124,6 +124,7 @@ TEST_F(Program, TheSummaryHasThreeLinesAndIsQuietOnRequest) {
   EXPECT_NE(r.out.find("doubts    none\n"), std::string::npos) << r.out;
   EXPECT_NE(r.out.find("one body without handles"), std::string::npos) << r.out;
   EXPECT_EQ(run(ball + "-q").out, "");
+  EXPECT_EQ(run("report ball -q").out, "");
   const std::string all = run(ball + "-v").out;
   EXPECT_NE(all.find("\nboundary  closed manifold"), std::string::npos) << all;
   EXPECT_NE(all.find("quality.csv"), std::string::npos) << all;
