@@ -32,6 +32,7 @@
 #include "python/arguments.h"
 #include "python/errors.h"
 #include "python/interruptible.h"
+#include "python/regions.h"
 #include "reconstruct/io/level_set_io.h"
 #include "reconstruct/io/point_cloud_io.h"
 
@@ -149,7 +150,7 @@ py::object certificate(const Points& points,
   Json json = document_head(kVersion);
   json.update(to_json(measured.mesh));
   json["valid"] = measured.is_valid;
-  json["places"] = p ? to_json(measured.defects) : Json(nullptr);
+  json["places"] = p ? json_by_fields(measured.defects) : Json(nullptr);
   json.update(to_json(judge(measured, parameters.output())));
   // Points and tets contain no information about psi, or about its source.
   if (!p) json["fits_psi"] = json["fits_input"] = nullptr;
@@ -281,6 +282,7 @@ void bind(py::module_& m) {
       .def_property_readonly("h", [](const Moving& a) { return a.mesher.background().h(); })
       .def_property_readonly("n_vertices", [](const Moving& a) { return a.mesher.background().n_vertices(); })
       .def("update", &update);
+  bind_regions(m);
   m.def("mesh", &mesh);
   m.def("reconstruct", &reconstruct_arrays);
   m.def("reconstruct_file", &reconstruct_file);

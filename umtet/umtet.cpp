@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "body/edges/edged_body.h"
 #include "body/edges/edged_cloud.h"
@@ -293,6 +295,32 @@ Mesh mesh_body(const SharedFunction& psi, const Options& options) {
   Domain domain = domain_in_box(options);
   domain.formula = psi;
   return mesh_of(std::move(domain), options);
+}
+
+RegionBody region_body(std::string name, const SharedFunction& psi) {
+  if (!psi.ref().has_hessian()) throw std::invalid_argument("regions: psi of " + name + " has no Hessian");
+  return {.name = std::move(name), .psi = [psi](const Vec3& x, Vec3* gradient, Mat3* hessian) {
+            const ImplicitFunctionRef f = psi.ref();
+            Vec3 g;
+            Mat3 H;
+            const double value = hessian ? f.value(x, g, H) : gradient ? f.value(x, g) : f.value(x);
+            if (gradient) *gradient = g;
+            if (hessian) *hessian = H;
+            return value;
+          }};
+}
+
+RegionBody region_body(std::string name, const FittedBody& body) {
+  const auto psi = std::make_shared<const LevelSet>(body.psi);
+  RegionBody made = region_body(std::move(name), SharedFunction(psi));
+  made.psi = [of_fit = std::move(made.psi), shift = body.report.shift](const Vec3& x, Vec3* gradient, Mat3* hessian) {
+    return of_fit(x - shift, gradient, hessian);
+  };
+  made.samples = body.cloud.points;
+  Box box;
+  for (const Vec3& x : made.samples) box.extend(x);
+  made.box = box;
+  return made;
 }
 
 }  // namespace umtet

@@ -12,6 +12,7 @@
 #include "body/fidelity/verdict.h"
 #include "body/options.h"
 #include "body/patches/boundary_division.h"
+#include "body/regions/region_bodies.h"
 #include "body/scan/scan_reports.h"
 #include "body/shared_function.h"
 #include "common/context.h"
@@ -124,5 +125,16 @@ template <ImplicitFunction F>
 Mesh mesh_body(F psi, const Options& options) {
   return mesh_body(shared_function(std::move(psi)), options);
 }
+
+/// One of several bodies that mesh_region_bodies() meshes with one mesh, in which they share their interfaces, as
+/// `umtet regions` does:
+///
+///   const umtet::RegionBodyMesh mesh =
+///       umtet::mesh_region_bodies({umtet::region_body("bone", bone), umtet::region_body("marrow", marrow)}, {});
+///
+/// \throw std::invalid_argument  psi has no Hessian
+RegionBody region_body(std::string name, const SharedFunction& psi);
+/// The body of a fit, in the coordinates of its input, with the samples that judge the mesh.
+RegionBody region_body(std::string name, const FittedBody& body);
 
 }  // namespace umtet

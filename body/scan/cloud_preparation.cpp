@@ -36,12 +36,15 @@ class Preparation {
 
  private:
   void tell_fields();
+  void mark(const Vec3& x, SampleMark how) { result_.marked.push_back({x + shift_, how}); }
+  void mark_turned(const std::vector<Vec3>& as_given);
+  void mark_doubtful();
   void clean_points();
   void find_normals();
   void fill_missing();
   void part_with_lines_of_sight();
   template <class Goes>
-  std::size_t drop_if(Goes&& goes);
+  std::size_t drop_if(SampleMark why, Goes&& goes);
   void drop_off_surface();
   void drop_undefined();
   void orient_as_told();
@@ -64,6 +67,7 @@ class Preparation {
   OrientedPointCloud cloud_;
   Neighbourhoods near_;              ///< of the cleaned cloud
   Covering covering_;                ///< of it
+  Vec3 shift_ = Vec3::Zero();        ///< model coordinates minus those of cloud_
   bool is_closed_ = false;           ///< as the winding number has it
   bool sights_are_guessed_ = false;  ///< the origins are what the file has as normals
   PreparedCloud result_;
@@ -85,6 +89,8 @@ void Preparation::clean_points() {
   CleaningParams params;
   params.outliers = !options_.scan.keep_all && !file_.of_triangles;
   const CleaningReport r = clean(cloud_, params, &near_, &covering_);
+  for (const Vec3& x : r.outliers) mark(x, SampleMark::Outlier);
+  for (const Vec3& x : r.small_components) mark(x, SampleMark::SmallComponent);
   const std::size_t n_not_finite = file_.n_points_dropped + r.n_not_finite;
   result_.report.dropped = {.not_finite = n_not_finite,
                             .duplicates = r.n_duplicates,
@@ -115,6 +121,20 @@ void Preparation::say_doubt() {
     notice(formatted("which side is outside is a guess for %.1f %% of the points", percent(n_doubtful)),
            {{Change::Use, option::flip, "turns them over"}, {Change::Use, option::viewpoints, "decides"}});
   }
+}
+
+void Preparation::mark_turned(const std::vector<Vec3>& as_given) {
+  for (std::size_t i = 0; i < as_given.size(); ++i)
+    if (as_given[i].dot(cloud_.normals[i]) < 0) mark(cloud_.points[i], SampleMark::Turned);
+}
+
+void Preparation::mark_doubtful() {
+  OrientationReport& r = *normals().orientation;
+  if (r.n_doubtful > 0) {
+    for (std::size_t i = 0; i < r.is_doubtful.size(); ++i)
+      if (r.is_doubtful[i] != 0) mark(cloud_.points[i], SampleMark::Doubtful);
+  }
+  r.is_doubtful = {};
 }
 
 /// Given normals that are no normals get the estimated ones of their places.
@@ -163,7 +183,9 @@ void Preparation::find_normals() {
                        r.n_turned, percent(r.n_turned), 100 * r.consistency, 100 * r.consistency_after),
              {{Change::Use, {option::normals, "given"}, "keeps them"}});
       ask_winding_number(&as_given);
+      mark_turned(as_given);
     }
+    mark_doubtful();
     return;
   }
   EstimatedNormals estimated = estimate_normals(cloud_.points, {}, &covering_);
@@ -177,6 +199,7 @@ void Preparation::find_normals() {
     look_to_origins();
   }
   say_doubt();
+  mark_doubtful();
 }
 
 /// Fits to the known samples of both, and what they say of the held-out ones. A fit that cannot be made explains
@@ -255,11 +278,15 @@ void Preparation::look_to_origins() {
 
 /// @return how many
 template <class Goes>
-std::size_t Preparation::drop_if(Goes&& goes) {
+std::size_t Preparation::drop_if(SampleMark why, Goes&& goes) {
   std::vector<std::uint32_t> kept;
   const std::size_t n = cloud_.points.size();
   for (std::size_t i = 0; i < n; ++i) {
-    if (!goes(i)) kept.push_back(static_cast<std::uint32_t>(i));
+    if (!goes(i)) {
+      kept.push_back(static_cast<std::uint32_t>(i));
+    } else {
+      mark(cloud_.points[i], why);
+    }
   }
   keep_samples(cloud_, kept);
   return n - kept.size();
@@ -269,7 +296,7 @@ std::size_t Preparation::drop_if(Goes&& goes) {
 void Preparation::drop_off_surface() {
   if (options_.scan.keep_all || file_.of_triangles || !covering_.is_even()) return;
   const std::vector<std::uint8_t> is_outlier = winding_outliers(cloud_, near_);
-  const std::size_t n = drop_if([&](std::size_t i) { return is_outlier[i] != 0; });
+  const std::size_t n = drop_if(SampleMark::Outlier, [&](std::size_t i) { return is_outlier[i] != 0; });
   result_.report.dropped.outliers += n;
   if (n > 0) {
     notice(formatted("dropped %zu more outliers, inside or outside of what the samples enclose", n),
@@ -280,7 +307,7 @@ void Preparation::drop_off_surface() {
 /// A point whose neighbours all lie at one place, or on a line, has no normal.
 void Preparation::drop_undefined() {
   const std::size_t n = cloud_.points.size();
-  drop_if([&](std::size_t i) { return cloud_.normals[i].isZero(0); });
+  drop_if(SampleMark::NoNormal, [&](std::size_t i) { return cloud_.normals[i].isZero(0); });
   const std::size_t kept = cloud_.points.size();
   if (kept < n) notice(formatted("dropped %zu points whose normal cannot be told", n - kept));
   if (kept < kFewestPoints) {
@@ -308,9 +335,9 @@ PreparedCloud Preparation::operator()() {
   report.n_normals_rescaled = file_.n_normals_rescaled;
   tell_fields();
   sort_in_space(cloud_);
-  const Vec3 shift = far_origin_shift(cloud_);  // squares of far coordinates would lose the surface
-  for (Vec3& x : cloud_.points) x -= shift;
-  for (Vec3& x : cloud_.origins) x -= shift;
+  shift_ = far_origin_shift(cloud_);  // squares of far coordinates would lose the surface
+  for (Vec3& x : cloud_.points) x -= shift_;
+  for (Vec3& x : cloud_.origins) x -= shift_;
   clean_points();
   find_normals();
   drop_off_surface();
@@ -318,8 +345,8 @@ PreparedCloud Preparation::operator()() {
   // Differences of coordinates have the same bits with and without the shift: so do distances.
   if (near_.size() == cloud_.points.size())
     result_.near = neighbour_distances(cloud_.points, near_, covering_, cloud_.counts);
-  for (Vec3& x : cloud_.points) x += shift;
-  for (Vec3& x : cloud_.origins) x += shift;
+  for (Vec3& x : cloud_.points) x += shift_;
+  for (Vec3& x : cloud_.origins) x += shift_;
   orient_as_told();
   report.n_points = cloud_.points.size();
   for (const Vec3& x : cloud_.points) report.box.extend(x);

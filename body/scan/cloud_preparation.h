@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "body/options.h"
 #include "body/scan/scan_reports.h"
@@ -9,12 +11,27 @@
 
 namespace umtet {
 
+/// What the preparation did to a sample, or doubts about it.
+enum class SampleMark : std::uint8_t {
+  Outlier = 1,         ///< dropped: far from a surface, or inside or outside of what the samples enclose
+  SmallComponent = 2,  ///< dropped with a small piece far from the rest
+  NoNormal = 3,        ///< dropped: its neighbours define no normal
+  Turned = 4,          ///< its given normal was turned over
+  Doubtful = 5,        ///< which side is outside is a guess
+};
+
+struct MarkedSample {
+  Vec3 where;  ///< model coordinates
+  SampleMark mark;
+};
+
 /// A cloud that is ready for the fit, and a report of the changes to the scan.
 struct PreparedCloud {
   OrientedPointCloud cloud;
   /// Neighbour distances of the points, for sample areas; empty if the preparation did not need them.
   NeighbourDistances near;
   CloudReport report;
+  std::vector<MarkedSample> marked;  ///< a sample may occur with several marks
 };
 
 /// Sorts the points of a scan in space, drops unusable points (CloudReport::dropped), and gives every point an outward

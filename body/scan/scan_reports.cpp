@@ -14,6 +14,8 @@ InputFacts input_facts(const CloudReport& cloud, const LevelSetReport& level_set
   if (normals.orientation) {
     facts.doubtful = static_cast<double>(normals.orientation->n_doubtful) / n;
     facts.consistency = normals.orientation->consistency_after;
+  } else {
+    facts.consistency = normals.consistency;  // the normals are kept as they are given
   }
   if (normals.winding) facts.off_a_half = normals.winding->off_after;
   // Signs of estimated normals come from the neighbours in the first place: nothing is turned by them.

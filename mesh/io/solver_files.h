@@ -67,6 +67,9 @@ void write_msh41_piece(const std::filesystem::path& path, const SolverMesh& mesh
 /// Writes HDF5: /nodes, /tets, /faces, /patch (of faces), /point_data/NAME and /cell_data/NAME; node sets as in
 /// write_vtu(). The file is first made in memory, so that every write can be checked; this takes twice its size.
 void write_hdf5(const std::filesystem::path& path, const SolverMesh& mesh);
+/// Writes /faces and /patch alone, to a file beside that of write_boundary_xdmf() with the ending .h5: dolfinx opens
+/// the HDF5 file with the name of the XDMF file, whatever that file says.
+void write_boundary_hdf5(const std::filesystem::path& path, const SolverMesh& mesh);
 /// Writes XDMF 3 with one grid, of the tets or of the faces. Readers expect one topology per file, so each grid has its
 /// own file.
 /// @param hdf5  the name of the file of write_hdf5(), in the same folder

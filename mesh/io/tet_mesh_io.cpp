@@ -45,7 +45,8 @@ MeshFile read_tet_mesh(const std::filesystem::path& path) {
   if (extension == ".vtu") return detail::read_vtu(path);
   if (extension == ".msh") return detail::read_msh(path);
   if (extension == ".mesh") return detail::read_medit(path);
-  throw MeshFileRefused(path, "", "unknown extension: .vtu, .msh and .mesh are read");
+  if (extension == ".inp") return detail::read_inp(path);
+  throw MeshFileRefused(path, "", "unknown extension: .vtu, .msh, .mesh and .inp are read");
 }
 
 namespace detail {
@@ -170,6 +171,11 @@ MeshFile assemble(const std::filesystem::path& path, NumberedMesh&& numbered) {
       path, file.mesh, [&](std::size_t v) { return sorted[v]; },
       [](std::size_t t) { return static_cast<std::int64_t>(t) + 1; });
   take_mid_sides(path, file, mid_sides, [&](std::size_t v) { return sorted[v]; });
+  const std::vector<std::int64_t>& region = numbered.region;
+  if (std::adjacent_find(region.begin(), region.end(), std::not_equal_to<>()) != region.end()) {
+    file.cell_data.emplace("region", std::move(numbered.region));
+    file.region_names = std::move(numbered.region_names);
+  }
   drop_unused_vertices(file);
   return file;
 }

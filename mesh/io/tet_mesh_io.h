@@ -29,6 +29,8 @@ struct MeshFile {
   /// vertices.
   std::optional<QuadraticTetMesh> quadratic = std::nullopt;
   std::map<std::string, FieldValues> quadratic_data = {};  ///< one value per quadratic->V
+  /// Names of the values of cell data `region`; empty if the file has no names.
+  std::map<std::int64_t, std::string> region_names = {};
 };
 
 /// Error for a file whose content contradicts its name or itself; what() contains the path, the location and the
@@ -44,7 +46,8 @@ class MeshFileRefused : public std::runtime_error {
 MeshFile with_standard_data(TetMesh mesh, std::vector<std::int64_t> background_vertex,
                             std::vector<std::int64_t> background_tet);
 
-/// Reads .vtu (VTK XML), .msh (Gmsh 2.2 and 4.1, ascii or binary) or .mesh (MEDIT, ascii), by extension.
+/// Reads .vtu (VTK XML), .msh (Gmsh 2.2 and 4.1, ascii or binary), .mesh (MEDIT, ascii) or .inp (Abaqus and CalculiX,
+/// with one part), by extension.
 ///
 /// Elements and vertices:
 /// - Only tets are read, other elements are skipped. Of curved tets the four corners are read, and all ten nodes if
@@ -53,7 +56,11 @@ MeshFile with_standard_data(TetMesh mesh, std::vector<std::int64_t> background_v
 /// - Orientation is kept, inverted tets included. A tet with a repeated corner, a vertex that is not finite and a
 ///   mid-side that is a corner elsewhere are rejected by number.
 /// - From .vtu, data with one component are read, too: floats as double, unsigned bytes unchanged, other integers as 64
-///   bits; and floats with three components.
+///   bits; and floats with three components. Field data NAME = number are the names of regions, if there is one for
+///   each value of cell data `region`.
+/// - From the other formats, tets that have several marks get cell data `region`: physical volumes of Gmsh, or its
+///   entities if there are none; references of MEDIT; sets of elements of Abaqus, in the order of the file from 1. A
+///   set of a *ELEMENT line marks its elements; *ELSETs replace these marks if each tet is in exactly one of them.
 ///
 /// Every count is compared with the size of the file before memory is allocated.
 /// \throw std::system_error if the file cannot be read, MeshFileRefused for invalid content

@@ -80,7 +80,8 @@ Triangle outward(const Tet& t, int opposite) {
 
 /// The faces between regions, the piece of each tet (tets of one region that are connected by faces), and whether each
 /// vertex is on the boundary of the mesh.
-std::vector<Face> interface_faces(const TetMesh& mesh, const std::vector<int>& region, std::vector<int>& piece,
+std::vector<Face> interface_faces(const TetMesh& mesh, const std::vector<int>& region,
+                                  const std::vector<Triangle>& sides, std::vector<int>& piece,
                                   std::vector<char>& is_on_boundary) {
   is_on_boundary.assign(mesh.V.size(), 0);
   const bool has_outside = std::find(region.begin(), region.end(), 0) != region.end();
@@ -108,11 +109,38 @@ std::vector<Face> interface_faces(const TetMesh& mesh, const std::vector<int>& r
       while (k + 1 < faces.size() && faces[k + 1].key == f.key) ++k;  // counted by certify() as overused
     } else {
       for (const int v : f.key) is_on_boundary[v] = 1;
-      if (!has_outside) between.push_back({outward(mesh.C[f.tet], f.opposite), region[f.tet], 0});
+      if (!has_outside && !std::binary_search(sides.begin(), sides.end(), f.key))
+        between.push_back({outward(mesh.C[f.tet], f.opposite), region[f.tet], 0});
     }
   }
   for (std::size_t t = 0; t < piece.size(); ++t) piece[t] = root(static_cast<int>(t));
   return between;
+}
+
+/// The boundary faces with the corners of another one.
+std::size_t unshared_faces(const TetMesh& mesh) {
+  std::vector<Triangle> faces = boundary_faces(mesh.C, mesh.V.size()).triangles;
+  std::vector<int> vertices;
+  for (const Triangle& f : faces) vertices.insert(vertices.end(), f.begin(), f.end());
+  const auto before = [&](int a, int b) {
+    const Vec3 &x = mesh.V[a], &y = mesh.V[b];
+    return std::lexicographical_compare(x.data(), x.data() + 3, y.data(), y.data() + 3);
+  };
+  std::sort(vertices.begin(), vertices.end(), [&](int a, int b) { return before(a, b) || (!before(b, a) && a < b); });
+  std::vector<int> first_at(mesh.V.size(), -1);  // the first vertex at the position of each
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const bool is_same = k > 0 && !before(vertices[k - 1], vertices[k]);
+    first_at[vertices[k]] = is_same ? first_at[vertices[k - 1]] : vertices[k];
+  }
+  for (Triangle& f : faces) {
+    for (int& v : f) v = first_at[v];
+    std::sort(f.begin(), f.end());
+  }
+  std::sort(faces.begin(), faces.end());
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    n += (k > 0 && faces[k] == faces[k - 1]) || (k + 1 < faces.size() && faces[k] == faces[k + 1]) ? 1 : 0;
+  return n;
 }
 
 void measure_faces(const TetMesh& mesh, const std::vector<Face>& faces, const RegionDomain* domain, double h,
@@ -158,17 +186,14 @@ void measure_faces(const TetMesh& mesh, const std::vector<Face>& faces, const Re
   for (const auto& [pair, m] : of_pair) interfaces.push_back(m);
 }
 
-std::string name_of(const InterfaceMeasures& m) {
-  return "between regions " + std::to_string(m.other) + " and " + std::to_string(m.region);
-}
-
 }  // namespace
 
 RegionCertificate certify_regions(const TetMesh& mesh, const std::vector<int>& region, const RegionDomain* domain,
-                                  double h, const Context& context) {
+                                  double h, const Context& context, const std::vector<Triangle>& sides) {
   if (region.size() != mesh.C.size()) throw std::invalid_argument("one region for each tet");
-  if (std::any_of(region.begin(), region.end(), [](int r) { return r < 0 || r >= kMostRegions; }))
-    throw std::invalid_argument("regions are numbers from 0 to " + std::to_string(kMostRegions - 1));
+  if (std::any_of(region.begin(), region.end(), [&](int r) { return r < 0 || (domain && r >= kMostRegions); }))
+    throw std::invalid_argument("regions are numbers from 0, and to " + std::to_string(kMostRegions - 1) +
+                                " with a domain");
   RegionCertificate made;
   CertificateInput input;
   input.mesh = &mesh;
@@ -177,8 +202,10 @@ RegionCertificate certify_regions(const TetMesh& mesh, const std::vector<int>& r
   made.whole = certify(input);
   std::vector<int> piece;
   std::vector<char> is_on_boundary;
-  const std::vector<Face> faces = interface_faces(mesh, region, piece, is_on_boundary);
-  std::vector<double> least(kMostRegions, 1);
+  const std::vector<Face> faces = interface_faces(mesh, region, sides, piece, is_on_boundary);
+  std::vector<double> least;  // by region
+  for (const int r : region)
+    if (static_cast<std::size_t>(r) >= least.size()) least.resize(static_cast<std::size_t>(r) + 1, 1);
   for (std::size_t t = 0; t < mesh.C.size(); ++t)
     if (std::none_of(mesh.C[t].begin(), mesh.C[t].end(), [&](int v) { return is_on_boundary[v] != 0; }))
       least[region[t]] = std::min(least[region[t]], mean_ratio(mesh, mesh.C[t]));
@@ -194,20 +221,32 @@ RegionCertificate certify_regions(const TetMesh& mesh, const std::vector<int>& r
     made.regions.push_back(std::move(m));
   }
   measure_faces(mesh, faces, domain, made.whole.h, context, made.interfaces);
+  made.n_unshared_faces = unshared_faces(mesh);
   return made;
 }
 
-std::vector<std::string> failures(const RegionCertificate& certificate, int n_regions) {
+std::vector<std::string> failures(const RegionCertificate& certificate, int n_regions,
+                                  const std::vector<std::string>& names) {
+  const auto name_of = [&](int r) {
+    return names.empty() ? "region " + std::to_string(r) : names[static_cast<std::size_t>(r)];
+  };
+  const auto between = [&](const InterfaceMeasures& m) {
+    return " between " + name_of(m.region) + " and " + name_of(m.other);
+  };
   std::vector<std::string> list = invalidities(certificate.whole);
   for (int r = 1; r < n_regions; ++r) {
     const bool is_there = std::any_of(certificate.regions.begin(), certificate.regions.end(),
                                       [&](const RegionMeasures& m) { return m.region == r; });
-    if (!is_there) list.push_back("region " + std::to_string(r) + " has no tet");
+    if (!is_there) list.push_back(name_of(r) + " has no tet");
   }
+  if (certificate.n_unshared_faces > 0)
+    list.push_back(std::to_string(certificate.n_unshared_faces) +
+                   " boundary faces lie on another one without sharing its vertices: regions touch, but are not "
+                   "connected");
   for (const InterfaceMeasures& m : certificate.interfaces) {
     if (m.n_off > 0)
-      list.push_back(std::to_string(m.n_off) + " corners of faces " + name_of(m) + " are off their sheet");
-    if (m.n_folded > 0) list.push_back(std::to_string(m.n_folded) + " faces " + name_of(m) + " are folded over");
+      list.push_back(std::to_string(m.n_off) + " corners of faces" + between(m) + " are off their sheet");
+    if (m.n_folded > 0) list.push_back(std::to_string(m.n_folded) + " faces" + between(m) + " are folded over");
   }
   return list;
 }

@@ -40,22 +40,30 @@ struct RegionCertificate {
   MeshCertificate whole;  ///< all tets, without psi: if they are embedded, no two tets of any region overlap
   std::vector<RegionMeasures> regions;        ///< ascending, region 0 included where it has tets
   std::vector<InterfaceMeasures> interfaces;  ///< ascending by region and other; without a domain only n_faces and area
+  /// Boundary faces of the mesh that lie on another one with the same corners, but other vertices: two regions touch
+  /// there, and are not connected.
+  std::size_t n_unshared_faces = 0;
 };
 
 /// Certifies a mesh of several regions, however it was made.
 ///
 /// Each face between two regions belongs to one tet on either side, because no face of `whole` has more than two tets.
 /// Without tets of region 0, the boundary faces of the mesh are interfaces of region 0.
-/// @param region  per tet, in 0 .. kMostRegions - 1
+/// @param region  per tet, >= 0; with a domain less than kMostRegions
 /// @param domain  null: the interfaces are not compared with sheets
 /// @param h       edge length of the ratios; <= 0: as in CertificateInput
+/// @param sides   boundary faces that are no interfaces although there is no region 0, such as those of
+///   PeriodicMatch; corners ascending in each, and the list ascending
 /// \throw std::invalid_argument as certify(), or if there is not one region per tet; Cancelled
 RegionCertificate certify_regions(const TetMesh& mesh, const std::vector<int>& region,
-                                  const RegionDomain* domain = nullptr, double h = 0, const Context& context = {});
+                                  const RegionDomain* domain = nullptr, double h = 0, const Context& context = {},
+                                  const std::vector<Triangle>& sides = {});
 
 /// The reasons why the certificate fails; empty if it passes: those of invalidities() of the whole mesh, vertices off
 /// their sheets, folded faces, and regions without a tet.
 /// @param n_regions  of the domain
-std::vector<std::string> failures(const RegionCertificate& certificate, int n_regions);
+/// @param names      one per region; empty: regions are called by their numbers
+std::vector<std::string> failures(const RegionCertificate& certificate, int n_regions,
+                                  const std::vector<std::string>& names = {});
 
 }  // namespace umtet

@@ -101,6 +101,19 @@ RegionDomain RegionDomain::of_least(std::vector<PatchFunction> functions) {
   return {std::move(functions), false};
 }
 
+RegionDomain RegionDomain::in_coordinates(const Vec3& origin, const Vec3& scale) const {
+  std::vector<PatchFunction> functions;
+  functions.reserve(functions_.size());
+  for (const PatchFunction& f : functions_)
+    functions.emplace_back([f, origin, scale](const Vec3& y, Vec3* gradient, Mat3* hessian) {
+      const double value = f(origin + scale.cwiseProduct(y), gradient, hessian);
+      if (gradient) *gradient = gradient->cwiseProduct(scale);
+      if (hessian) *hessian = scale.asDiagonal() * *hessian * scale.asDiagonal();
+      return value;
+    });
+  return {std::move(functions), has_bodies_};
+}
+
 int RegionDomain::region(const Vec3& x) const {
   if (has_bodies_) return region_of_bodies(functions_, x);
   double difference;

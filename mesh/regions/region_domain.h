@@ -28,6 +28,9 @@ class RegionDomain {
   /// \throw std::invalid_argument for fewer than two functions or more than kMostRegions
   static RegionDomain of_least(std::vector<PatchFunction> functions);
 
+  /// The domain in coordinates y with x = origin + scale y, component by component. \pre scale > 0
+  RegionDomain in_coordinates(const Vec3& origin, const Vec3& scale) const;
+
   int n_regions() const { return n_regions_; }
   /// The region of a point.
   int region(const Vec3& x) const;
@@ -35,6 +38,8 @@ class RegionDomain {
   bool has_bodies() const { return has_bodies_; }
   /// psi_k of body k: region k + 1. \pre has_bodies()
   const PatchFunction& body(int k) const { return functions_[static_cast<std::size_t>(k)]; }
+  /// psi of all bodies, or the functions of which the least decides.
+  const std::vector<PatchFunction>& functions() const { return functions_; }
 
   /// The patch of the sheet between two regions. \pre a != b
   int patch(int a, int b) const {

@@ -1,16 +1,16 @@
 #include "mesh/regions/region_labels.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
+#include <random>
 #include <stdexcept>
 
 #include "common/polled_loops.h"
 #include "mesh/base/id_blocks.h"
 #include "mesh/base/id_set.h"
 #include "mesh/regions/detail/label_band.h"
+#include "mesh/regions/detail/label_costs.h"
 #include "mesh/submesh/assemble_submesh.h"
 
 namespace umtet {
@@ -18,113 +18,69 @@ namespace {
 
 constexpr double kLeastGain = 1e-6;  // less is rounding
 constexpr std::size_t kVerticesPerPoll = 1 << 10;
+constexpr double kLastTemperature = .02;  // the cost of a distance of .45 edges
+constexpr std::uint32_t kSeed = 1;
+constexpr int kMostFailures = 2;   // of annealing around a vertex: it is random
+constexpr int kAnnealedRings = 2;  // three find no more, in twice the time
 
-/// Iterated conditional modes on the labels of a band.
+/// The search for labels of low cost in a band.
 class LabelSearch {
  public:
-  LabelSearch(detail::LabelBand& band, const RegionLabelParams& params) : band_(band), params_(params) {
-    const std::size_t n = band_.size();
-    regions_.resize(n);
-    for (std::size_t v = 0; v < n; ++v) regions_[v] = regions_around(static_cast<int>(v));
-    cost_.resize(n);
-    for (std::size_t v = 0; v < n; ++v) cost_[v] = cost_of(static_cast<int>(v));
-    seen_.assign(n, 0);
-    open_.assign(n, 0);
-  }
+  LabelSearch(detail::LabelCosts& costs, const RegionLabelParams& params)
+      : costs_(costs),
+        band_(costs.band()),
+        params_(params),
+        open_(costs.size(), 0),
+        n_failures_(costs.size(), 0),
+        random_(kSeed) {}
 
   void operator()(const Context& context, RegionLabels& report) {
     report.n_invalid_at_start = count_invalid();
-    open_around_invalid(1);
+    open_around_bad(1);
     change_singles(context, report);
-    for (int round = 0; round < params_.pair_rounds && count_invalid() > 0; ++round) {
+    for (int round = 0; round < params_.pair_rounds && !bad_vertices().empty(); ++round) {
       const std::size_t before = report.n_changes;
-      open_around_invalid(2);
+      open_around_bad(2);
       change_pairs(context, report);
       change_singles(context, report);
       if (report.n_changes == before) break;
     }
-    for (std::size_t v = 0; v < band_.size(); ++v) {
-      if (std::popcount(regions_[v]) < 2) continue;
+    for (int round = 0; round < params_.annealing_rounds; ++round) {
+      const std::size_t before = report.n_changes;
+      for (const int v : bad_vertices())
+        if (is_bad(v) && n_failures_[v] < kMostFailures && !anneal_around(v, context, report)) ++n_failures_[v];
+      if (report.n_changes == before) break;
+      open_around_bad(1);
+      change_singles(context, report);
+    }
+    for (std::size_t v = 0; v < costs_.size(); ++v) {
+      const RegionSet regions = costs_.regions(static_cast<int>(v));
+      if (std::popcount(regions) < 2) continue;
       ++report.n_interface;
-      if (!is_valid(static_cast<int>(v))) report.invalid.push_back({band_.id(v), regions_[v]});
+      if (!costs_.is_valid(static_cast<int>(v))) report.invalid.push_back({band_.id(v), regions});
     }
   }
 
  private:
-  RegionSet regions_at(int code) const {
-    return code >= 0 ? regions_[code] : RegionSet{1} << detail::LabelBand::label_beyond(code);
-  }
-
-  /// M(v).
-  RegionSet regions_around(int v) const {
-    const LinkTopology& link = band_.topology(v);
-    std::array<std::uint8_t, kMaxLink> label;
-    const std::uint8_t own = band_.label[v];
-    bool is_uniform = true;
-    for (int k = 0; k < link.n; ++k) {
-      label[k] = std::max(own, band_.label_at(band_.link(v)[k]));
-      is_uniform = is_uniform && label[k] == label[0];
-    }
-    if (is_uniform) return RegionSet{1} << (link.n > 0 ? label[0] : own);
-    RegionSet regions = 0;
-    for (const auto& t : link.triangles) regions |= RegionSet{1} << std::max({label[t[0]], label[t[1]], label[t[2]]});
-    return regions;
-  }
-
-  bool is_valid(int v) const {
-    const LinkTopology& link = band_.topology(v);
-    const int n = std::popcount(regions_[v]);
-    std::array<LinkMask, kMostRegions> of_region;  // the link vertices at a region, for each member of M(v)
-    LinkMask once = 0, twice = 0, junctions = 0;   // at one, two, three regions or more
-    int m = 0;
-    for (RegionSet rest = regions_[v]; rest != 0; rest &= rest - 1, ++m) {
-      LinkMask mask = 0;
-      for (int k = 0; k < link.n; ++k) mask |= (regions_at(band_.link(v)[k]) >> std::countr_zero(rest) & 1) << k;
-      of_region[m] = mask;
-      junctions |= twice & mask;
-      twice |= once & mask;
-      once |= mask;
-    }
-    if (n == 3 && std::popcount(junctions) != 2) return false;
-    for (int a = 1; a < n; ++a)
-      for (int b = 0; b < a; ++b)
-        if (!is_line(link, of_region[a] & of_region[b], junctions, n)) return false;
-    return true;
-  }
-
-  /// Whether these vertices of a link are those of one sheet around a vertex of n regions: a cycle without chords, or a
-  /// path without chords between two junctions.
-  static bool is_line(const LinkTopology& link, LinkMask line, LinkMask junctions, int n) {
-    if (line == 0) return n > 3;  // not every two regions at a corner meet
-    if (n == 2 && std::popcount(line) < 4) return false;
-    for (LinkMask bits = line; bits != 0; bits &= bits - 1) {
-      const int k = std::countr_zero(bits);
-      if (std::popcount(link.adjacent[k] & line) != ((junctions >> k & 1) != 0 ? 1 : 2)) return false;
-    }
-    return n > 3 || link.is_connected(line);
-  }
-
-  double cost_of(int v) const {
-    const RegionSet own = regions_[v];
-    if (std::popcount(own) < 2) return 0;
-    double cost = is_valid(v) ? 0 : 1;
-    const int lowest = std::countr_zero(own);
-    for (RegionSet rest = own & (own - 1); rest != 0; rest &= rest - 1) {
-      const double d = band_.distance(v, std::countr_zero(rest), lowest);
-      cost += params_.distance_weight * d * d;
-    }
-    return cost;
-  }
+  bool is_bad(std::size_t v) const { return costs_.cost(static_cast<int>(v)) >= params_.bad_cost; }
 
   std::size_t count_invalid() const {
-    return static_cast<std::size_t>(std::count_if(cost_.begin(), cost_.end(), [](double c) { return c >= 1; }));
+    std::size_t n = 0;
+    for (std::size_t v = 0; v < costs_.size(); ++v)
+      n += std::popcount(costs_.regions(static_cast<int>(v))) > 1 && !costs_.is_valid(static_cast<int>(v)) ? 1 : 0;
+    return n;
   }
 
-  /// Opens the vertices within some rings of one that is not valid.
-  void open_around_invalid(int rings) {
-    std::vector<int> front;
-    for (std::size_t v = 0; v < band_.size(); ++v)
-      if (cost_[v] >= 1) front.push_back(static_cast<int>(v));
+  std::vector<int> bad_vertices() const {
+    std::vector<int> bad;
+    for (std::size_t v = 0; v < costs_.size(); ++v)
+      if (is_bad(v)) bad.push_back(static_cast<int>(v));
+    return bad;
+  }
+
+  /// Opens the vertices within some rings of a bad one.
+  void open_around_bad(int rings) {
+    std::vector<int> front = bad_vertices();
     for (const int v : front) open_[v] = 1;
     for (int ring = 0; ring < rings; ++ring) {
       std::vector<int> next;
@@ -135,58 +91,6 @@ class LabelSearch {
     }
   }
 
-  /// Whether {label >= k} keeps its topology for each k, if v gets another label.
-  bool is_simple(int v, std::uint8_t label) const {
-    const std::uint8_t low = std::min(label, band_.label[v]), high = std::max(label, band_.label[v]);
-    const LinkTopology& link = band_.topology(v);
-    LinkMask last = 0;
-    for (int k = low + 1; k <= high; ++k) {
-      LinkMask mask = 0;
-      for (int i = 0; i < link.n; ++i)
-        mask |= static_cast<LinkMask>(band_.label_at(band_.link(v)[i]) >= k ? 1 : 0) << i;
-      if (k > low + 1 && mask == last) continue;
-      if (!link.state(mask).simple) return false;
-      last = mask;
-    }
-    return true;
-  }
-
-  /// Sets a label, and what follows from it. @return the change of the cost
-  double set(int v, std::uint8_t label) {
-    band_.label[v] = label;
-    changed_.clear();
-    const auto renew = [&](int u) {
-      const RegionSet now = regions_around(u);
-      if (now == regions_[u]) return;
-      regions_[u] = now;
-      changed_.push_back(u);
-    };
-    renew(v);
-    for (const int u : band_.link(v))
-      if (u >= 0) renew(u);
-    ++stamp_;
-    double change = 0;
-    const auto measure = [&](int u) {
-      if (u < 0 || seen_[u] == stamp_) return;
-      seen_[u] = stamp_;
-      const double now = cost_of(u);
-      change += now - cost_[u];
-      cost_[u] = now;
-    };
-    for (const int c : changed_) {
-      measure(c);
-      for (const int u : band_.link(c)) measure(u);
-    }
-    return change;
-  }
-
-  /// The labels of the neighbours, without the own one.
-  RegionSet other_labels(int v) const {
-    RegionSet labels = 0;
-    for (const int u : band_.link(v)) labels |= RegionSet{1} << band_.label_at(u);
-    return labels & ~(RegionSet{1} << band_.label[v]);
-  }
-
   struct Change {
     int vertex = -1;
     std::uint8_t label = 0;
@@ -195,20 +99,20 @@ class LabelSearch {
   /// Replaces `best` by a change of v that gains more.
   void improve(int v, double before, Change& best) {
     const std::uint8_t own = band_.label[v];
-    for (RegionSet labels = other_labels(v); labels != 0; labels &= labels - 1) {
+    for (RegionSet labels = costs_.other_labels(v); labels != 0; labels &= labels - 1) {
       const auto label = static_cast<std::uint8_t>(std::countr_zero(labels));
-      if (!is_simple(v, label)) continue;
-      const double gain = before - set(v, label);
+      if (!costs_.is_simple(v, label)) continue;
+      const double gain = before - costs_.set(v, label);
       if (gain > best.gain) best = {v, label, gain};
-      set(v, own);
+      costs_.set(v, own);
     }
   }
 
   void keep(int v, std::uint8_t label) {
-    set(v, label);
-    for (const int c : std::vector<int>(changed_))
+    costs_.set(v, label);
+    for (const int c : std::vector<int>(costs_.changed()))
       for (const int u : band_.link(c))
-        if (u >= 0 && cost_[u] >= 1) {
+        if (u >= 0 && is_bad(u)) {
           open_[u] = 1;
           for (const int w : band_.link(u))
             if (w >= 0) open_[w] = 1;
@@ -244,17 +148,17 @@ class LabelSearch {
       const std::uint8_t own = band_.label[v];
       Change best{.gain = kLeastGain};
       std::uint8_t first = own;
-      for (RegionSet labels = other_labels(v); labels != 0; labels &= labels - 1) {
+      for (RegionSet labels = costs_.other_labels(v); labels != 0; labels &= labels - 1) {
         const auto label = static_cast<std::uint8_t>(std::countr_zero(labels));
-        if (!is_simple(v, label)) continue;
-        const double gain = -set(v, label);
+        if (!costs_.is_simple(v, label)) continue;
+        const double gain = -costs_.set(v, label);
         for (const int w : band_.link(v)) {
           if (w < 0 || !band_.is_movable[w]) continue;
           const double least = best.gain;
           improve(w, gain, best);
           if (best.gain > least) first = label;
         }
-        set(v, own);
+        costs_.set(v, own);
       }
       if (best.vertex < 0) continue;
       keep(v, first);
@@ -263,14 +167,71 @@ class LabelSearch {
     }
   }
 
-  detail::LabelBand& band_;
+  /// The vertices within two rings whose labels may change.
+  std::vector<int> movable_around(int centre) const {
+    std::vector<int> ball = {centre};
+    std::size_t first = 0;
+    for (int ring = 0; ring < kAnnealedRings; ++ring) {
+      const std::size_t end = ball.size();
+      for (; first < end; ++first)
+        for (const int w : band_.link(ball[first]))
+          if (w >= 0 && std::find(ball.begin(), ball.end(), w) == ball.end()) ball.push_back(w);
+    }
+    std::erase_if(ball, [&](int v) { return band_.is_movable[v] == 0; });
+    return ball;
+  }
+
+  /// A random label of the neighbours of v, as Metropolis's rule takes it. @return the change of the cost
+  double try_random_label(int v, double temperature) {
+    RegionSet labels = costs_.other_labels(v);
+    if (labels == 0) return 0;
+    for (auto skip = random_() % static_cast<unsigned>(std::popcount(labels)); skip > 0; --skip) labels &= labels - 1;
+    const auto label = static_cast<std::uint8_t>(std::countr_zero(labels));
+    if (!costs_.is_simple(v, label)) return 0;
+    const std::uint8_t own = band_.label[v];
+    const double change = costs_.set(v, label);
+    const double uniform = static_cast<double>(random_()) / std::mt19937::max();
+    if (change <= 0 || uniform < std::exp(-change / temperature)) return change;
+    costs_.set(v, own);
+    return 0;
+  }
+
+  /// Simulated annealing of the labels around a bad vertex. The best labels that it meets are kept.
+  /// @return whether they cost less than before
+  bool anneal_around(int centre, const Context& context, RegionLabels& report) {
+    context.poll();
+    const std::vector<int> ball = movable_around(centre);
+    if (ball.empty()) return false;
+    std::vector<std::uint8_t> start(ball.size());
+    const auto read = [&](std::vector<std::uint8_t>& labels) {
+      for (std::size_t k = 0; k < ball.size(); ++k) labels[k] = band_.label[ball[k]];
+    };
+    read(start);
+    std::vector<std::uint8_t> best = start;
+    double now = 0, least = -kLeastGain;
+    const double cooling = std::pow(kLastTemperature / params_.temperature, 1. / params_.annealing_sweeps);
+    double temperature = params_.temperature;
+    for (int sweep = 0; sweep < params_.annealing_sweeps; ++sweep, temperature *= cooling)
+      for (std::size_t k = 0; k < ball.size(); ++k) {
+        const double change = try_random_label(ball[random_() % ball.size()], temperature);
+        now += change;
+        if (now >= least || change >= 0) continue;
+        least = now;
+        read(best);
+      }
+    for (std::size_t k = 0; k < ball.size(); ++k) {
+      if (best[k] != band_.label[ball[k]]) costs_.set(ball[k], best[k]);
+      report.n_changes += best[k] != start[k] ? 1 : 0;
+    }
+    return least < -kLeastGain;
+  }
+
+  detail::LabelCosts& costs_;
+  const detail::LabelBand& band_;
   const RegionLabelParams& params_;
-  std::vector<RegionSet> regions_;  ///< M(v)
-  std::vector<double> cost_;
-  std::vector<std::uint8_t> open_;  ///< a change may lower the cost
-  std::vector<int> changed_;        ///< by the last set()
-  std::vector<int> seen_;
-  int stamp_ = 0;
+  std::vector<std::uint8_t> open_;        ///< a change may lower the cost
+  std::vector<std::uint8_t> n_failures_;  ///< of annealing around each vertex
+  std::mt19937 random_;
 };
 
 }  // namespace
@@ -282,22 +243,29 @@ std::vector<std::string> problems(const RegionLabelParams& params) {
   if (!(params.distance_weight >= 0)) list.emplace_back("distance_weight must be >= 0");
   if (params.max_sweeps < 0) list.emplace_back("max_sweeps must be >= 0");
   if (params.pair_rounds < 0) list.emplace_back("pair_rounds must be >= 0");
+  if (!(params.poor_quality >= 0 && params.poor_quality < 1)) list.emplace_back("poor_quality must be in 0 .. 1");
+  if (!(params.bad_cost > 0)) list.emplace_back("bad_cost must be > 0");
+  if (params.annealing_rounds < 0) list.emplace_back("annealing_rounds must be >= 0");
+  if (params.annealing_sweeps < 1) list.emplace_back("annealing_sweeps must be >= 1");
+  if (!(params.temperature > 0)) list.emplace_back("temperature must be > 0");
   return list;
 }
 
 RegionLabels choose_labels(const RegionDomain& domain, const BackgroundMesh& background, const VertexLinks& links,
-                           const RegionLabelParams& params, const Context& context) {
+                           const RegionLabelParams& params, const Context& context,
+                           const detail::PeriodicCells* cells) {
   std::string all;
   for (const std::string& problem : problems(params)) all += (all.empty() ? "" : "; ") + problem;
   if (!all.empty()) throw std::invalid_argument(all);
   RegionLabels chosen;
   chosen.of_vertex = detail::regions_of_vertices(domain, background, chosen.n_psi_evaluations, context);
-  detail::LabelBand band(domain, background, links, chosen.of_vertex, params.reach, context);
+  detail::LabelBand band(domain, background, links, chosen.of_vertex, params.reach, cells, context);
   chosen.leaves_background = band.leaves_background();
   if (chosen.leaves_background) return chosen;
   chosen.n_psi_evaluations += band.n_psi_evaluations();
   band.shrink(params.shift);
-  LabelSearch search(band, params);
+  detail::LabelCosts costs(domain, band, params);
+  LabelSearch search(costs, params);
   search(context, chosen);
   for (std::size_t v = 0; v < band.size(); ++v) chosen.of_vertex[static_cast<std::size_t>(band.id(v))] = band.label[v];
   return chosen;

@@ -13,6 +13,10 @@
 
 namespace umtet {
 
+namespace detail {
+class PeriodicCells;
+}
+
 /// Parameters of choose_labels(). Lengths are in edges of the background.
 struct RegionLabelParams {
   /// A vertex begins in a greater region only where it is deeper than this below their sheet: the tets of the greater
@@ -21,7 +25,14 @@ struct RegionLabelParams {
   double reach = 1.3;           ///< a vertex farther from every sheet keeps its label; > 0
   double distance_weight = .1;  ///< cost of the squared distance of an interface vertex from its sheets; >= 0
   int max_sweeps = 20;          ///< over vertices whose change may lower the cost; >= 0
-  int pair_rounds = 6;          ///< rounds of changes of two neighbours, around vertices that are not valid; >= 0
+  int pair_rounds = 6;          ///< rounds of changes of two neighbours, around bad vertices; >= 0
+  /// Tets at curves and corners cost more the lower their mean ratio is below this one; 0: nothing. The ball cut in two
+  /// of tools/regions/region_meshes.py has its greatest least Q at .5: .6 and .7 leave more places that are worse.
+  double poor_quality = .5;
+  double bad_cost = .4;        ///< a vertex that costs as much is bad: its surroundings are searched longer; > 0
+  int annealing_rounds = 4;    ///< over the vertices that are still bad; >= 0
+  int annealing_sweeps = 300;  ///< over the vertices around a bad one; >= 1
+  double temperature = 4;      ///< of the first sweep: the cost of four vertices that are not valid; > 0
 };
 
 /// All broken constraints, not just the first.
@@ -61,12 +72,18 @@ struct RegionLabels {
 /// The labels begin as the regions of the vertices, shrunk by `shift`. From there, iterated conditional modes
 /// [Besag1986] change single labels and then two neighbours at once while this lowers
 ///
-///     sum over interface vertices v of  [v is not valid] + distance_weight * sum over sheets of v of distance^2.
+///     sum over interface vertices v of  [v is not valid] + distance_weight * sum over sheets of v of distance^2
+///                                       + sum over tets at v, on curves and at corners, of max(0, 1 - Q / poor)^2
+///
+/// where Q is the mean ratio of the tet once all its vertices are at the foot of their stratum. Where a vertex still
+/// costs `bad_cost`, simulated annealing [Kirkpatrick1983] searches the labels of two rings around it.
 ///
 /// A label changes only where the vertices of each set {label >= k} keep their topology (LinkState::simple).
 /// One thread; the same labels on every run.
+/// @param cells  null, or the cells of a torus: copies of vertices have the labels of their representatives
 /// \throw std::invalid_argument naming every broken constraint of params; Cancelled
 RegionLabels choose_labels(const RegionDomain& domain, const BackgroundMesh& background, const VertexLinks& links,
-                           const RegionLabelParams& params = {}, const Context& context = {});
+                           const RegionLabelParams& params = {}, const Context& context = {},
+                           const detail::PeriodicCells* cells = nullptr);
 
 }  // namespace umtet

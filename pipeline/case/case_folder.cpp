@@ -53,8 +53,8 @@ void remove_view(const CasePaths& paths) {
 const char* section_of(Stage stage) { return stage == Stage::LevelSet ? "reconstruct" : to_string(stage); }
 
 bool is_artefact(Stage stage, const std::string& name) {
-  if (stage == Stage::Cloud) return name == "cloud.ply" || name == "triangles.ply";
-  if (stage == Stage::LevelSet) return name == "level_set.vti" || name == "features.vtp";
+  if (stage == Stage::Cloud) return name == "cloud.ply" || name == "triangles.ply" || name == "marked.vtp";
+  if (stage == Stage::LevelSet) return name == "level_set.vti" || name == "features.vtp" || name == "patches.vtp";
   for (const char* mesh : {"omega_h.vtu", "projected.vtu", "mesh.vtu", "quality.csv", "features.vtp", "too_thin.vtp",
                            "defects.vtp", "iterates.pvd"}) {
     if (name == mesh) return true;

@@ -9,6 +9,7 @@
 
 #include "pipeline/case/version.h"
 #include "pipeline/cli/detail/command_parser.h"
+#include "pipeline/cli/help_format.h"
 #include "pipeline/output/export_case.h"
 
 namespace umtet {
@@ -123,13 +124,18 @@ CommandParser::CommandParser() {
   regions
       .add_option("BODY", in_.bodies,
                   "NAME=FORMULA, the body where the formula is negative, or NAME=FILE of points or triangles; later "
-                  "bodies cover earlier ones")
+                  "bodies cover earlier ones. Or IMAGE, whose labels are the regions")
       ->required();
   regions.add_option("-o", in_.output, "folder for regions.vtu and regions.json");
+  add_formats(regions, "--export");
+  regions.add_flag("--least", in_.least, "a point belongs to the body whose formula is least, not to the last one");
+  regions.add_flag("--periodic", in_.periodic, "the box is one period: opposite sides of the mesh match");
   regions.add_flag("--no-outside", in_.no_outside, "mesh the bodies alone, not the rest of the box");
   add_parameter_sources(regions);
   for (const ParamField& f : params_fields())
-    if (f.key == keys::mesh::box || f.key == keys::mesh::h || f.key == keys::mesh::tets) add_value(regions, f);
+    if (f.key == keys::mesh::box || f.key == keys::mesh::h || f.key == keys::mesh::tets ||
+        f.key == keys::output::label_names)
+      add_value(regions, f);
 
   add_batch();
 
@@ -155,7 +161,7 @@ CommandParser::CommandParser() {
 
   CLI::App& check =
       add_command("check", make_check, "Check validity and quality of any tet mesh; exit 6 if the check fails");
-  check.add_option("MESH", in_.input, ".vtu, .msh or .mesh")->required();
+  check.add_option("MESH", in_.input, ".vtu, .msh, .mesh or .inp")->required();
   check.add_option("--against", in_.against, "case whose surface the mesh should fit");
   add_parameter_sources(check);
   add_parameter_flags(check, {"output"},
@@ -163,7 +169,7 @@ CommandParser::CommandParser() {
                        keys::output::patch_angle, keys::output::patch_planar});
 
   CLI::App& exports = add_command("export", make_export, "Write files for solvers and viewers to CASE/4-export");
-  exports.add_option("CASE", in_.input, "a case with a mesh")->required();
+  exports.add_option("CASE", in_.input, "a case with a mesh, or a folder of umtet regions")->required();
   add_formats(exports, "--format").required();
   add_parameter_flags(exports, {"output"},
                       {keys::output::units, keys::output::max_memory, keys::output::min_quality, keys::output::strict,
@@ -171,8 +177,8 @@ CommandParser::CommandParser() {
   add_fresh(exports, "take patches and names from this call alone, not from former calls");
 
   CLI::App& report =
-      add_command("report", make_report, "Write CASE/report.html: certificate, mesh and curves on one page, offline");
-  report.add_option("CASE", in_.input, "a case with a certificate")->required();
+      add_command("report", make_report, "Write CASE/report.html: certificate, stages and curves on one page, offline");
+  report.add_option("CASE", in_.input, "a case with at least one stage")->required();
 
   CLI::App& view =
       add_command("view", make_view, "Write CASE/5-view: psi on a grid, psi = 0 and a script for ParaView");
@@ -182,6 +188,8 @@ CommandParser::CommandParser() {
                                "Report the first stage in which two cases differ, and the differences of each stage");
   diff.add_option("CASE_A", in_.input, "first case")->required();
   diff.add_option("CASE_B", in_.other_case, "second case")->required();
+  diff.add_option("-o", in_.output, "page with the picture (default: diff.html in the second case)");
+  group_flags(app_);
 }
 
 void CommandParser::add_batch() {

@@ -31,6 +31,7 @@ struct EvolveCommand {
 
 struct RegionsCommand {
   RegionsRequest request;
+  std::vector<std::string> formats;  ///< written to FOLDER/4-export
 };
 
 struct BatchCommand {
@@ -66,6 +67,7 @@ struct ViewCommand {
 
 struct DiffCommand {
   std::filesystem::path case_a, case_b;
+  std::filesystem::path page;  ///< the picture; empty: diff.html in case_b
 };
 
 using Command = std::variant<TextAnswer, RunCommand, EvolveCommand, RegionsCommand, BatchCommand, InspectCommand,

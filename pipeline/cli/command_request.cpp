@@ -244,11 +244,18 @@ Command make_regions(const CLI::App& app, const CommandInputs& in) {
   request.parameters = flag_parameters(app, in);
   read_parameters(
       in, [](Stage) { return true; }, request.parameters);
-  for (const std::string& body : in.bodies) request.bodies.push_back(named_source(body));
+  if (in.bodies.size() == 1 && is_file(in.bodies[0])) {
+    request.image = in.bodies[0];
+  } else {
+    for (const std::string& body : in.bodies) request.bodies.push_back(named_source(body));
+  }
   request.has_outside = !in.no_outside;
+  request.is_periodic = in.periodic;
+  request.overlap = in.least ? Overlap::Least : Overlap::Later;
   if (in.output.empty()) throw UsageError("regions: -o FOLDER is missing");
   request.folder = in.output;
-  return RegionsCommand{std::move(request)};
+  require_formats_of_regions(in.formats);
+  return RegionsCommand{std::move(request), in.formats};
 }
 
 Command make_inspect(const CLI::App& app, const CommandInputs& in) {
@@ -290,6 +297,6 @@ Command make_report(const CLI::App&, const CommandInputs& in) { return ReportCom
 
 Command make_view(const CLI::App&, const CommandInputs& in) { return ViewCommand{in.input}; }
 
-Command make_diff(const CLI::App&, const CommandInputs& in) { return DiffCommand{in.input, in.other_case}; }
+Command make_diff(const CLI::App&, const CommandInputs& in) { return DiffCommand{in.input, in.other_case, in.output}; }
 
 }  // namespace umtet

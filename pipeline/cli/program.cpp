@@ -21,6 +21,7 @@
 #include "pipeline/meshing/check.h"
 #include "pipeline/meshing/part_mesher.h"
 #include "pipeline/output/case_diff.h"
+#include "pipeline/output/diff_page.h"
 #include "pipeline/output/export_case.h"
 #include "pipeline/output/inspect.h"
 #include "pipeline/output/inspect_formula.h"
@@ -50,6 +51,17 @@ std::string file_list(const std::vector<std::filesystem::path>& files) {
   std::string out;
   for (const auto& file : files) out += (out.empty() ? "files     " : "          ") + file.string() + "\n";
   return out;
+}
+
+/// Returns a line with the mesh, its report and the exports.
+std::string main_files(const RunRequest& request, const RunOutcome& outcome) {
+  const CasePaths paths{request.case_folder};
+  std::string line = "files     " + paths.mesh().string();
+  for (const auto& file : outcome.files) {
+    const bool is_export = file.parent_path() == paths.exports();
+    if (is_export || file == paths.report()) line += ", " + file.string();
+  }
+  return line + "\n";
 }
 
 Json names(const std::vector<std::filesystem::path>& files) {
@@ -121,8 +133,10 @@ Output Execution::operator()(RunCommand& command) const {
                      {"changed", outcome.changed},
                      {"files", names(outcome.files)},
                      {"certificate", outcome.certificate ? to_json(*outcome.certificate) : Json(nullptr)}};
-  if (outcome.certificate) output.text = summary(*outcome.certificate);
-  output.text += file_list(outcome.files);
+  if (options.verbosity == Verbosity::Quiet) return output;
+  const bool is_long = options.verbosity == Verbosity::Verbose;
+  if (outcome.certificate) output.text = is_long ? summary(*outcome.certificate) : short_summary(*outcome.certificate);
+  output.text += is_long || !outcome.certificate ? file_list(outcome.files) : main_files(request, outcome);
   return output;
 }
 
@@ -166,7 +180,12 @@ Output Execution::operator()(EvolveCommand& command) const {
 Output Execution::operator()(RegionsCommand& command) const {
   set_work_at_hand("regions");
   command.request.threads = options.threads;
-  const RegionsOutcome outcome = mesh_regions(command.request, progress);
+  RegionsOutcome outcome = mesh_regions(command.request, progress);
+  if (!command.formats.empty()) {
+    set_work_at_hand("export");
+    for (auto& file : export_regions(command.request.folder, command.formats, progress))
+      outcome.files.push_back(std::move(file));
+  }
   progress.clear();
   return {outcome.code,
           outcome.text + file_list(outcome.files),
@@ -201,12 +220,22 @@ std::shared_ptr<const MeshWithBoundary> Execution::parts_of(const ExportCommand&
   return run_case(request, progress).parts;
 }
 
+constexpr const char* kKeysOfPatches[] = {keys::output::label_names, keys::output::label_min_area,
+                                          keys::output::patch_angle, keys::output::patch_planar};
+
+/// \throw UsageError  a parameter that divides the boundary into patches
+void require_no_patches(const Parameters& parameters) {
+  for (const char* key : kKeysOfPatches) {
+    if (parameters.source(key) >= ParamSource::Set)
+      throw UsageError(std::string(key) + " applies to one body; the patches of several are their interfaces");
+  }
+}
+
 /// Reports settings of former calls that divide the boundary into patches.
 void tell_patches(const ExportCommand& command, Progress& progress) {
   const auto concerns = [](const std::string& text) {
-    const auto keys = {keys::output::label_names, keys::output::label_min_area, keys::output::patch_angle,
-                       keys::output::patch_planar};
-    return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return text.starts_with(key); });
+    return std::any_of(std::begin(kKeysOfPatches), std::end(kKeysOfPatches),
+                       [&](const char* key) { return text.starts_with(key); });
   };
   for (const KeptParameter& kept : command.parameters.kept()) {
     if (concerns(kept.key)) progress.say("export: keeps " + kept.words + " (--fresh drops it)");
@@ -219,6 +248,14 @@ void tell_patches(const ExportCommand& command, Progress& progress) {
 Output Execution::operator()(const ExportCommand& command) const {
   require_case(command.case_folder);
   require_formats(command.formats);
+  if (has_regions(command.case_folder)) {
+    require_no_patches(command.parameters);
+    set_work_at_hand("export");
+    const CaseLock lock(command.case_folder);
+    const auto files = export_regions(command.case_folder, command.formats, progress);
+    progress.clear();
+    return output_of_files(files);
+  }
   tell_patches(command, progress);
   if (ranks.n == 1 || !is_in_pieces(command.formats)) require_current_mesh({command.case_folder});
   std::shared_ptr<const MeshWithBoundary> parts;
@@ -253,9 +290,15 @@ Output Execution::operator()(const ViewCommand& command) const {
 
 Output Execution::operator()(const DiffCommand& command) const {
   set_work_at_hand("diff");
-  const CaseDiff found = diff_cases({command.case_a}, {command.case_b}, progress);
+  const CasePaths a{command.case_a}, b{command.case_b};
+  const CaseDiff found = diff_cases(a, b, progress);
+  const std::filesystem::path page = command.page.empty() ? b.root / "diff.html" : command.page;
+  const bool is_drawn = write_diff_page(page, a, b, found);
   progress.clear();
-  return {ExitCode::Success, diff_text(found), {{"diff", to_json(found)}}};
+  const std::string text = diff_text(found, options.verbosity == Verbosity::Verbose);
+  return {ExitCode::Success,
+          is_drawn ? text + "picture: " + page.string() + "\n" : text,
+          {{"diff", to_json(found)}, {"picture", is_drawn ? Json(page.string()) : Json(nullptr)}}};
 }
 
 /// Applies the limits of memory and time to this process. The limits of a batch apply to its scans, which run in

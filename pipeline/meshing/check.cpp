@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "body/body.h"
 #include "body/fidelity/closed_holes.h"
@@ -11,7 +12,9 @@
 #include "body/sizing/edge_length.h"
 #include "mesh/certify/boundary_surface.h"
 #include "mesh/certify/certificate.h"
+#include "mesh/io/file_regions.h"
 #include "mesh/io/tet_mesh_io.h"
+#include "mesh/regions/region_certificate.h"
 #include "pipeline/case/exit_code.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/domain/load_domain.h"
@@ -106,13 +109,25 @@ MeshCheck check_mesh(const fs::path& file, const std::optional<fs::path>& agains
   MeshCheck check;
   check.file = file.string();
   check.units = units_of(parameters);
-  check.mesh = domain ? certify_against(*domain, input) : certify(input);
+  std::vector<std::string> of_regions;  // reasons to fail
+  if (std::optional<FileRegions> regions = domain ? std::nullopt : file_regions(content)) {
+    RegionCertificate certificate = certify_regions(mesh, regions->of_tet, nullptr, 0, input.context);
+    check.mesh = certificate.whole;
+    of_regions = failures(certificate, 0);
+    check.regions = RegionCheck{std::move(*regions), std::move(certificate)};
+  } else {
+    check.mesh = domain ? certify_against(*domain, input) : certify(input);
+  }
   stop_if_interrupted();
   MeshMeasures measured = measures_of(check.mesh, domain ? &*domain : nullptr, until_interrupted());
   if (content.quadratic) {
     const auto psi = domain ? std::optional(domain->psi()) : std::nullopt;
     check.second_order = check_second_order(*content.quadratic, input, psi, check.mesh.h);
     for (std::string& reason : failures(*check.second_order)) measured.reasons.push_back(std::move(reason));
+  }
+  for (std::string& reason : of_regions) {
+    if (std::find(measured.reasons.begin(), measured.reasons.end(), reason) == measured.reasons.end())
+      measured.reasons.push_back(std::move(reason));
   }
   check.is_valid = measured.is_valid;
   if (domain) check.defects = measured.defects;

@@ -10,8 +10,8 @@
 
 namespace umtet {
 
-/// Measures and judges any .vtu, .msh or .mesh: counts, quality, boundary; with a case also distances and normals
-/// relative to its psi.
+/// Measures and judges any .vtu, .msh, .mesh or .inp: counts, quality, boundary; with a case also distances and normals
+/// relative to its psi, and without one also each region, where the tets have several (file_regions()).
 /// @param against     a case whose level set or formula the mesh should fit
 /// @param parameters  output.min_quality is the gate on the minimum mean ratio (0: none), output.units goes into the
 ///   document

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 
+#include "mesh/io/points_io.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
+#include "pipeline/case/exit_code.h"
 
 namespace umtet {
 
@@ -30,6 +32,36 @@ void write_defects(const std::filesystem::path& file, const std::vector<MeshDefe
                {"small", small},
                {"n", n}});
   });
+}
+
+void write_marked(const std::filesystem::path& file, const std::vector<MarkedSample>& marked) {
+  std::vector<Vec3> points;
+  std::vector<std::uint8_t> marks;
+  for (const MarkedSample& sample : marked) {
+    points.push_back(sample.where);
+    marks.push_back(static_cast<std::uint8_t>(sample.mark));
+  }
+  write_artefact(file, [&](const std::filesystem::path& temporary) {
+    write_vtp(temporary, points, {{"mark", marks}});
+  });
+}
+
+std::vector<MarkedSample> read_marked(const std::filesystem::path& file) {
+  const PointFile content = [&] {
+    try {
+      return read_points(file);
+    } catch (const MeshFileRefused& e) {
+      throw ArtefactDamaged(e.what());
+    }
+  }();
+  const auto marks = content.point_data.find("mark");
+  const auto* values =
+      marks == content.point_data.end() ? nullptr : std::get_if<std::vector<std::uint8_t>>(&marks->second);
+  if (!values) throw ArtefactDamaged(file.string() + ": has no array mark");
+  std::vector<MarkedSample> marked;
+  for (std::size_t i = 0; i < content.points.size(); ++i)
+    marked.push_back({content.points[i], static_cast<SampleMark>((*values)[i])});
+  return marked;
 }
 
 void write_thin_places(const std::filesystem::path& file, const ThinPlaces& thin, const Vec3& shift) {

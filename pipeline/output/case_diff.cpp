@@ -21,6 +21,8 @@ namespace umtet {
 namespace fs = std::filesystem;
 namespace {
 
+// Two numbers that differ by less than this share look alike in three digits.
+constexpr double kSeen = 1e-3;
 // Maximum number of differing numbers per stage in the text; the document contains all.
 constexpr std::size_t kListed = 8;
 
@@ -189,18 +191,35 @@ Json to_json(const StageDiff& s) {
 }
 
 /// Returns a value as text. A list of objects, such as holes or thin places, is represented by its length.
-std::string shown(const Json& value) {
+std::string shown(const Json& value, bool is_long) {
+  if (value.is_null()) return "none";
+  if (value.is_number_float() && !is_long) return fmt::format("{:.4g}", value.get<double>());
   if (!value.is_array() || value.empty() || !value.front().is_object()) return value.dump();
   return fmt::format("[{} entr{}]", value.size(), value.size() == 1 ? "y" : "ies");
 }
 
-std::string lines_of(const std::vector<ValueDifference>& differences, const char* what) {
-  std::string out;
-  for (std::size_t k = 0; k < std::min(kListed, differences.size()); ++k) {
-    const ValueDifference& d = differences[k];
-    out += fmt::format("  {} {}: {} | {}\n", what, d.at.substr(1), shown(d.a), shown(d.b));
+/// Returns whether a user would see the difference: numbers differ in three digits, and neither value is a list of
+/// numbers or texts.
+bool matters(const ValueDifference& d) {
+  const bool is_list = (d.a.is_array() && !d.a.empty() && !d.a.front().is_object()) ||
+                       (d.b.is_array() && !d.b.empty() && !d.b.front().is_object());
+  if (is_list) return false;
+  if (d.a.is_number() && d.b.is_number()) {
+    const double a = d.a.get<double>(), b = d.b.get<double>();
+    return std::abs(a - b) > kSeen * std::max(std::abs(a), std::abs(b));
   }
-  if (differences.size() > kListed) out += fmt::format("  and {} more\n", differences.size() - kListed);
+  return shown(d.a, false) != shown(d.b, false);
+}
+
+std::string lines_of(const std::vector<ValueDifference>& differences, const char* what, bool is_long) {
+  std::string out;
+  std::size_t n_listed = 0;
+  for (const ValueDifference& d : differences) {
+    if (!is_long && (n_listed == kListed || !matters(d))) continue;
+    ++n_listed;
+    out += fmt::format("  {} {}: {} | {}\n", what, d.at.substr(1), shown(d.a, is_long), shown(d.b, is_long));
+  }
+  if (differences.size() > n_listed) out += fmt::format("  and {} more (-v)\n", differences.size() - n_listed);
   return out;
 }
 
@@ -249,7 +268,7 @@ Json to_json(const CaseDiff& diff) {
           {"stages", stages}};
 }
 
-std::string diff_text(const CaseDiff& diff) {
+std::string diff_text(const CaseDiff& diff, bool is_long) {
   const std::optional<Stage> first = diff.first_difference();
   std::string out =
       first ? std::string("first difference: ") + to_string(*first) + "\n" : "all stages have the same files\n";
@@ -261,10 +280,10 @@ std::string diff_text(const CaseDiff& diff) {
       continue;
     }
     out += s.same ? "same files\n" : "differs\n";
-    out += lines_of(s.parameters, "parameter");
+    out += lines_of(s.parameters, "parameter", true);
     if (!s.difference) continue;
     for (const auto& [name, measure] : *s.difference) out += fmt::format("  {}: {}\n", name, shown(measure));
-    out += lines_of(s.numbers, "number");
+    out += lines_of(s.numbers, "number", is_long);
   }
   return out;
 }

@@ -54,7 +54,8 @@ CaseDiff diff_cases(const CasePaths& a, const CasePaths& b, Progress& progress);
 /// Returns the answer of `umtet diff --json`.
 Json to_json(const CaseDiff& diff);
 
-/// Returns the comparison as text, some lines per stage.
-std::string diff_text(const CaseDiff& diff);
+/// Returns the comparison as text, some lines per stage. The short form leaves out numbers that are equal to three
+/// digits, and lists.
+std::string diff_text(const CaseDiff& diff, bool is_long = false);
 
 }  // namespace umtet

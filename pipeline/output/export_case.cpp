@@ -7,6 +7,9 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <stdexcept>
+#include <utility>
+#include <variant>
 
 #include "mesh/io/solver_files.h"
 #include "pipeline/case/exit_code.h"
@@ -31,6 +34,9 @@ struct ExportedFile {
   std::string ending;
   Writer write;
 };
+
+constexpr const char* kRegionsMesh = "regions.vtu";
+constexpr const char* kBoundaryHdf5 = "mesh_boundary.h5";  // of several regions
 
 struct ExportFormat {
   std::string name;
@@ -85,9 +91,13 @@ std::vector<PendingFile> files_of(const ExportFormat& format, const fs::path& fo
     files.push_back(
         {folder / ("mesh" + file.ending), [&mesh, &file](const fs::path& path) { file.write(path, mesh); }});
   }
+  if (format.pieces == PieceFormat::Xdmf && !mesh.regions.empty())
+    files.push_back({folder / kBoundaryHdf5, [&mesh](const fs::path& path) { write_boundary_hdf5(path, mesh); }});
   if (!format.surface || mesh.patches.size() < 2) return files;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    files.push_back({folder / ("mesh." + mesh.patches[p].name + format.files.front().ending),
+    std::string name = mesh.patches[p].name;
+    std::replace(name.begin(), name.end(), '|', '+');  // not in names of files of other systems
+    files.push_back({folder / ("mesh." + name + format.files.front().ending),
                      [&mesh, p, surface = *format.surface](const fs::path& path) {
                        write_boundary_surface(path, mesh, surface, p);
                      }});
@@ -109,6 +119,7 @@ bool is_piece(const std::string& name, PieceFormat format) {
 }
 
 bool is_exported(const std::string& name) {
+  if (name == kBoundaryHdf5) return true;
   for (const ExportFormat& format : formats_known()) {
     if (format.pieces && is_piece(name, *format.pieces)) return true;
     for (const ExportedFile& file : format.files) {
@@ -225,6 +236,40 @@ SolverMesh mesh_of_case(const CasePaths& paths, const Parameters& parameters, Pr
   }
 }
 
+/// \throw ArtefactDamaged
+SolverMesh mesh_of_regions(const fs::path& path) {
+  try {
+    MeshFile file = read_tet_mesh(path);
+    const auto found = file.cell_data.find("region");
+    const auto* marks =
+        found == file.cell_data.end() ? nullptr : std::get_if<std::vector<std::int64_t>>(&found->second);
+    if (!marks) throw ArtefactDamaged(path.string() + ": it has no cell data region");
+    std::vector<std::string> names;
+    std::vector<int> region;
+    region.reserve(marks->size());
+    for (const std::int64_t mark : *marks) {
+      const auto name = file.region_names.find(mark);
+      if (mark < 0 || name == file.region_names.end())
+        throw ArtefactDamaged(fmt::format("{}: region {} has no name", path.string(), mark));
+      region.push_back(static_cast<int>(mark));
+    }
+    for (const auto& [number, name] : file.region_names) {
+      if (number != static_cast<std::int64_t>(names.size()))
+        throw ArtefactDamaged(fmt::format("{}: region {} has no name", path.string(), names.size()));
+      names.push_back(name);
+    }
+    SolverMesh mesh = solver_mesh(file.mesh);
+    mesh.point_data = std::move(file.point_data);
+    mesh.cell_data = std::move(file.cell_data);
+    set_regions(mesh, region, names);
+    return mesh;
+  } catch (const MeshFileRefused& e) {
+    throw ArtefactDamaged(e.what());
+  } catch (const std::invalid_argument& e) {
+    throw ArtefactDamaged(path.string() + ": " + e.what());
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& export_formats() {
@@ -303,6 +348,38 @@ std::vector<fs::path> export_case(const CasePaths& paths, const std::vector<std:
     const std::vector<fs::path> files = is_of_parts
                                             ? write_pieces(*format.pieces, paths.exports(), *parts->mesh, data())
                                             : write_format(format, paths.exports(), whole());
+    written.insert(written.end(), files.begin(), files.end());
+    remove_former(format, paths, written);
+  }
+  return written;
+}
+
+bool has_regions(const fs::path& folder) {
+  return fs::exists(folder / kRegionsMesh) && !fs::exists(CasePaths{folder}.parameters());
+}
+
+void require_formats_of_regions(const std::vector<std::string>& formats) {
+  require_formats(formats);
+  if (std::find(formats.begin(), formats.end(), "pmsh") != formats.end())
+    throw UsageError("pmsh supports one body only; msh has several regions");
+}
+
+std::vector<fs::path> export_regions(const fs::path& folder, const std::vector<std::string>& formats,
+                                     Progress& progress) {
+  require_formats_of_regions(formats);
+  const CasePaths paths{folder};
+  progress.report("export", "read", 0);
+  const SolverMesh mesh = mesh_of_regions(folder / kRegionsMesh);
+  progress.detail(fmt::format("export: {} tets in {} regions, {} faces in {} patches", mesh.n_tets(),
+                              mesh.regions.size(), mesh.n_faces(), mesh.patches.size()));
+  fs::create_directories(paths.exports());
+  remove_stale_temporaries(paths.exports());
+  std::vector<fs::path> written;
+  for (std::size_t i = 0; i < formats.size(); ++i) {
+    stop_if_interrupted();
+    progress.report("export", formats[i], static_cast<double>(i + 1) / static_cast<double>(formats.size() + 1));
+    const ExportFormat& format = format_of(formats[i]);
+    const std::vector<fs::path> files = write_format(format, paths.exports(), mesh);
     written.insert(written.end(), files.begin(), files.end());
     remove_former(format, paths, written);
   }

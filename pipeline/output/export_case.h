@@ -37,4 +37,17 @@ std::vector<std::filesystem::path> export_case(const CasePaths& paths, const std
                                                const Parameters& parameters, Progress& progress,
                                                const MeshWithBoundary* parts = nullptr);
 
+/// Returns whether `umtet regions` has made this folder: it contains regions.vtu and no case.toml.
+bool has_regions(const std::filesystem::path& folder);
+
+/// \throw UsageError  an unknown format, or pmsh, which is for one body
+void require_formats_of_regions(const std::vector<std::string>& formats);
+
+/// Writes FOLDER/4-export/mesh.<suffix> and related files of FOLDER/regions.vtu: a part for each region, a patch for
+/// each interface and for the walls (set_regions()). In names of files '+' replaces the '|' of patches.
+/// @return the files written
+/// \throw the exception of require_formats_of_regions(); ArtefactDamaged, Interrupted, std::system_error
+std::vector<std::filesystem::path> export_regions(const std::filesystem::path& folder,
+                                                  const std::vector<std::string>& formats, Progress& progress);
+
 }  // namespace umtet

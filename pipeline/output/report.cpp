@@ -10,14 +10,15 @@
 #include <sstream>
 
 #include "pipeline/case/exit_code.h"
+#include "pipeline/case/failure_file.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/domain/load_domain.h"
 #include "pipeline/output/boundary_patches.h"
-#include "pipeline/output/detail/report_sources.h"
 #include "pipeline/output/report_defects.h"
 #include "pipeline/output/report_page.h"
 #include "pipeline/output/report_plot.h"
 #include "pipeline/output/report_scene.h"
+#include "pipeline/output/stage_strip.h"
 #include "pipeline/reports/certificate_json.h"
 #include "pipeline/reports/stage_reports.h"
 
@@ -183,6 +184,21 @@ std::string patch_settings(const Parameters& parameters) {
                                parameters.output().patch_angle, parameters.output().patch_planar));
 }
 
+/// Returns why there is no mesh, and the stage to blame.
+std::string failure_list(const std::optional<CaseFailure>& failure, const Json& blame) {
+  if (!failure) return "<ul class=\"reasons\">\n<li>There is no mesh yet: umtet run continues the case.</li>\n</ul>";
+  std::string out = fmt::format(
+      "<ul class=\"reasons\">\n<li>The stage {} ended with exit code {}: <span class=\"said\">{}"
+      "</span></li>\n",
+      to_string(failure->stage), static_cast<int>(failure->code), html_text(failure->message));
+  if (blame.is_object()) {
+    const std::string remedy = blame.at("remedy");
+    out += "<li>Cause: " + html_text(blame.at("stage")) + " (" + html_text(blame.at("number")) + ")." +
+           (remedy.empty() ? "" : " Try " + html_text(remedy) + ".") + "</li>\n";
+  }
+  return out + "</ul>";
+}
+
 CertificateRun run_of(const Certificate& certificate) { return certificate.run.value_or(CertificateRun{}); }
 
 }  // namespace
@@ -196,40 +212,61 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
   const MeshFile& mesh = handover.mesh;
   ReportScene scene;
   Figures figures;
+  StageStrip strip;
   tbb::parallel_invoke(
       [&] {
         scene = report_scene(mesh, *handover.domain,
                              divided(paths, mesh, *handover.domain, parameters, certificate.measured));
       },
-      [&] { figures = figures_of(paths, parameters, mesh, certificate); });
+      [&] { figures = figures_of(paths, parameters, mesh, certificate); },
+      [&] {
+        strip = stage_strip({paths, parameters, &*handover.domain, &certificate});
+      });
   stop_if_interrupted();
-  std::string blocks;
-  for (const auto& [name, text] : scene.blocks) {
-    blocks += fmt::format("<script type=\"text/plain\" id=\"block-{}\">{}</script>\n", name, text);
-  }
+  std::erase_if(scene.blocks, [](const auto& block) { return block.first == "points"; });  // a layer of the strip
   const CertificateRun run = run_of(certificate);
-  const std::string page =
-      filled(report_page_html(), {{"checksum", run.checksum},
-                                  {"patch_settings", patch_settings(parameters)},
-                                  {"title", title_of(paths)},
-                                  {"css", std::string(report_page_css())},
-                                  {"js", std::string(report_viewer_js())},
-                                  {"three", std::string(report_three_js())},
-                                  {"verdict", certificate.verdict.word()},
-                                  {"made", html_text(fmt::format("umtet {} · {}", certificate.version, run.date))},
-                                  {"reasons", reason_list(certificate)},
-                                  {"checks", check_list(certificate)},
-                                  {"cards", headline_cards(certificate)},
-                                  {"shown", shown_text(scene.head)},
-                                  {"places", defect_table(certificate)},
-                                  {"holes", hole_table(certificate)},
-                                  {"missed", missed_table(certificate)},
-                                  {"figures", figures.figures},
-                                  {"tables", figures.tables},
-                                  {"certificate", script_json(to_json(certificate))},
-                                  {"scene", script_json(to_json(scene.head))},
-                                  {"blocks", blocks}});
-  write_text_artefact(paths.report(), page);
+  write_text_artefact(paths.report(),
+                      report_page({{"checksum", run.checksum},
+                                   {"patch_settings", patch_settings(parameters)},
+                                   {"title", title_of(paths)},
+                                   {"verdict", certificate.verdict.word()},
+                                   {"verdict_mark", " data-certificate=\"/verdict\""},
+                                   {"made", html_text(fmt::format("umtet {} · {}", certificate.version, run.date))},
+                                   {"reasons", reason_list(certificate)},
+                                   {"checks", check_list(certificate)},
+                                   {"cards", headline_cards(certificate)},
+                                   {"shown", shown_text(scene.head)},
+                                   {"places", defect_table(certificate)},
+                                   {"holes", hole_table(certificate)},
+                                   {"missed", missed_table(certificate)},
+                                   {"figures", figures.figures},
+                                   {"tables", figures.tables},
+                                   {"certificate", script_json(to_json(certificate))},
+                                   {"scene", script_json(to_json(scene.head))},
+                                   {"strip", script_json(strip.document)},
+                                   {"blocks", blocks_text(scene.blocks) + blocks_text(strip.blocks)}}));
+}
+
+void write_unfinished_report(const CasePaths& paths, const Parameters& parameters) {
+  std::optional<Domain> domain;
+  std::vector<StageRecord> records;
+  const bool is_alone = has_own_psi(parameters.mesh());
+  for (const Stage stage : kStages) {
+    if (!is_alone && fs::exists(paths.record(stage))) records.push_back(read_record(paths, stage));
+  }
+  if (is_alone || fs::exists(paths.record(Stage::LevelSet))) domain = load_domain(paths, parameters);
+  const std::optional<CaseFailure> failure = read_failure(paths);
+  const StageStrip strip = stage_strip({paths, parameters, domain ? &*domain : nullptr, nullptr, failure});
+  stop_if_interrupted();
+  write_text_artefact(paths.report(),
+                      report_page({{"title", title_of(paths)},
+                                   {"verdict", failure ? "fail" : "not finished"},
+                                   {"made", html_text(fmt::format("umtet {}", kVersion))},
+                                   {"reasons", failure_list(failure, strip.document.at("blame"))},
+                                   {"shown", "There is no mesh."},
+                                   {"tables", stage_table(records) + parameter_table(read_text(paths.parameters()))},
+                                   {"strip", script_json(strip.document)},
+                                   {"blocks", blocks_text(strip.blocks)}}));
 }
 
 bool report_is_of(const CasePaths& paths, const Certificate& certificate, const Parameters& parameters) {
@@ -244,11 +281,14 @@ bool report_is_of(const CasePaths& paths, const Certificate& certificate, const 
 }
 
 void report_case(const CasePaths& paths) {
-  if (!fs::exists(paths.parameters()) || !fs::exists(paths.certificate())) {
-    throw UsageError(paths.root.string() + ": there is no certificate; umtet run makes one");
-  }
+  const bool has_stage = fs::exists(paths.failed()) || std::any_of(kStages.begin(), kStages.end(), [&](Stage stage) {
+                           return fs::exists(paths.record(stage));
+                         });
+  if (!fs::exists(paths.parameters()) || !has_stage)
+    throw UsageError(paths.root.string() + ": there is no stage to report; umtet run makes one");
   Parameters parameters;
   parameters.load(paths.parameters(), ParamSource::Case);
+  if (!fs::exists(paths.certificate())) return write_unfinished_report(paths, parameters);
   const bool is_alone = has_own_psi(parameters.mesh());
   for (const Stage stage : kStages) {
     if (is_alone && stage != Stage::Mesh) continue;

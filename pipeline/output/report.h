@@ -18,8 +18,12 @@ void write_report(const CasePaths& paths, const Parameters& parameters, const Ce
 /// Returns whether CASE/report.html was made from this certificate and shows the patches of these parameters.
 bool report_is_of(const CasePaths& paths, const Certificate& certificate, const Parameters& parameters);
 
-/// `umtet report`: calls write_report() for a case on disk.
-/// \throw UsageError  there is no certificate; ArtefactDamaged, Interrupted, std::system_error
+/// Writes the report of a case without a certificate: the stages that are done, the remains of a mesh that could not be
+/// made, and the stage to blame. \throw ArtefactDamaged, Interrupted, std::system_error
+void write_unfinished_report(const CasePaths& paths, const Parameters& parameters);
+
+/// `umtet report`: calls write_report() for a case on disk, or write_unfinished_report().
+/// \throw UsageError  the folder contains no stage of a case; ArtefactDamaged, Interrupted, std::system_error
 void report_case(const CasePaths& paths);
 
 }  // namespace umtet

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "pipeline/output/detail/report_sources.h"
+
 namespace umtet {
 namespace {
 
@@ -251,6 +253,25 @@ std::string filled(std::string_view page, const std::map<std::string, std::strin
     out += it->second;
     page.remove_prefix(close + 2);
   }
+}
+
+std::string report_page(std::map<std::string, std::string> parts) {
+  parts.insert({{"css", std::string(report_page_css())},
+                {"js", fmt::format("{}{}{}", report_scenes_js(), report_view_js(), report_viewer_js())},
+                {"three", std::string(report_three_js())},
+                {"certificate", "null"},
+                {"scene", "null"}});
+  for (const char* name : {"checksum", "patch_settings", "verdict", "verdict_mark", "made", "reasons", "checks",
+                           "cards", "shown", "places", "holes", "missed", "figures", "tables", "blocks"})
+    parts.try_emplace(name);
+  return filled(report_page_html(), parts);
+}
+
+std::string blocks_text(const std::vector<std::pair<std::string, std::string>>& blocks) {
+  std::string text;
+  for (const auto& [name, base64] : blocks)
+    text += fmt::format("<script type=\"text/plain\" id=\"block-{}\">{}</script>\n", name, base64);
+  return text;
 }
 
 std::string base64(const void* data, std::size_t size) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pipeline/case/record.h"
@@ -34,6 +35,13 @@ std::string certificate_table(const Json& certificate);
 
 /// Returns the template with every {{name}} replaced. \throw std::invalid_argument  names a placeholder without a value
 std::string filled(std::string_view page, const std::map<std::string, std::string>& places);
+
+/// Returns a page of report/page.html with the program in it.
+/// @param parts  the placeholders besides those of the program; missing ones are empty, missing JSON is null
+std::string report_page(std::map<std::string, std::string> parts);
+
+/// Returns arrays in base64 as elements of the page.
+std::string blocks_text(const std::vector<std::pair<std::string, std::string>>& blocks);
 
 /// Returns base64 of RFC 4648, with padding.
 std::string base64(const void* data, std::size_t size);

@@ -8,7 +8,6 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
-#include <unordered_map>
 
 #include "body/pieces/zero_set_choice.h"
 #include "common/indices_where.h"
@@ -17,30 +16,21 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/meshing/made_mesh.h"
 #include "pipeline/meshing/sample_fields.h"
+#include "pipeline/output/detail/scene_blocks.h"
 #include "pipeline/output/detail/worst_tets.h"
 #include "pipeline/output/report_page.h"
 
 namespace umtet {
 namespace {
 
-constexpr double kSteps16 = 65535, kSteps8 = 255;
+using detail::FacedTet;
+using detail::in_known_steps;
+using detail::in_steps;
+
 constexpr std::uint8_t kNoValue = 255;
 constexpr std::size_t kValuesPerPoll = 100'000;
-
-/// A face and the vertex of its tet behind it.
-using FacedTet = std::array<int, 4>;
-
-std::uint8_t in_steps(double value, double least, double most) {
-  if (!(most > least)) return 0;
-  return static_cast<std::uint8_t>(std::lround(kSteps8 * std::clamp((value - least) / (most - least), 0., 1.)));
-}
-
-/// Converts a value to steps, with one step reserved for unknown values.
-std::uint8_t in_known_steps(double value, double least, double most) {
-  if (std::isnan(value)) return kNoValue;
-  if (!(most > least)) return 0;
-  return static_cast<std::uint8_t>(std::lround((kNoValue - 1) * std::clamp((value - least) / (most - least), 0., 1.)));
-}
+// Cells of 12 tets have about two tets along an edge: their squares look as fine as the tets. A million take 1.3 MB.
+constexpr double kTetsPerCell = 12, kMostCells = 1e6;
 
 template <class Value = double>
 const std::vector<Value>* field(const std::map<std::string, FieldValues>& data, const char* name) {
@@ -83,8 +73,10 @@ class SceneMaker {
   void write_indices(const char* name, const std::vector<FacedTet>& list);
   void write_positions(const char* name, const std::vector<Vec3>& points);
   void write_bytes(const char* name, const std::vector<std::uint8_t>& bytes) {
-    scene_.blocks.emplace_back(name, base64(bytes.data(), bytes.size()));
+    scene_.blocks.emplace_back(name, detail::byte_block(bytes));
   }
+  void write_ids();
+  void write_cells();
   void write_values();
   void write_fields();
   void write_field(const std::string& name, const std::vector<double>& values);
@@ -144,39 +136,14 @@ void SceneMaker::take_patches(const SolverMesh& divided) {
   if (area.size() > 1) face_patch_ = divided.face_patch;
 }
 
-/// Moves the corners in a cell of a grid to one of them and drops the faces that vanish; cells grow until few enough
-/// faces are left. The surface stays closed.
 void SceneMaker::coarsen_faces() {
-  double area = 0;
-  for (const FacedTet& f : faces_) {
-    area += (mesh_.V[f[1]] - mesh_.V[f[0]]).cross(mesh_.V[f[2]] - mesh_.V[f[0]]).norm() / 2;
+  const std::vector<std::size_t> kept = detail::coarsen_faces(mesh_.V, box_.min(), caps_.faces, faces_);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    face_tet_[k] = face_tet_[kept[k]];
+    if (!face_patch_.empty()) face_patch_[k] = face_patch_[kept[k]];
   }
-  // About two triangles per square of the grid.
-  double cell = std::sqrt(2 * area / static_cast<double>(caps_.faces));
-  for (std::vector<std::size_t> kept; kept.empty() || kept.size() > caps_.faces; cell *= 1.1) {
-    kept.clear();
-    std::unordered_map<std::uint64_t, int> corner_of;
-    std::vector<FacedTet> faces = faces_;
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      FacedTet& f = faces[i];
-      for (int k = 0; k < 3; ++k) {
-        const Eigen::Matrix<std::uint64_t, 3, 1> at =
-            ((mesh_.V[f[k]] - box_.min()) / cell).array().floor().matrix().cast<std::uint64_t>();
-        f[k] = corner_of.try_emplace((at.z() << 42) + (at.y() << 21) + at.x(), f[k]).first->second;
-      }
-      if (f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) kept.push_back(i);
-    }
-    if (kept.size() > caps_.faces) continue;
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      faces_[k] = faces[kept[k]];
-      face_tet_[k] = face_tet_[kept[k]];
-      if (!face_patch_.empty()) face_patch_[k] = face_patch_[kept[k]];
-    }
-    faces_.resize(kept.size());
-    face_tet_.resize(kept.size());
-    if (!face_patch_.empty()) face_patch_.resize(kept.size());
-    if (kept.empty()) return;
-  }
+  face_tet_.resize(kept.size());
+  if (!face_patch_.empty()) face_patch_.resize(kept.size());
 }
 
 /// Selects all tets, or the worst tets and the tets at the middle planes. A tet is drawn at a cut if a neighbour is on
@@ -214,12 +181,56 @@ void SceneMaker::take_tets() {
 
 void SceneMaker::take_points() {
   const std::vector<Vec3>& all = domain_.cloud.points;
+  if (caps_.points == 0) return;
   const std::size_t step = all.size() / caps_.points + 1;
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < all.size(); i += step) points.push_back(all[i] + domain_.shift);
   scene_.head.n_points = all.size();
   scene_.head.n_points_shown = points.size();
   write_positions("points", points);
+}
+
+/// The ids of tets that the viewer cannot derive: if all tets are shown, those after the worst ones ascend.
+void SceneMaker::write_ids() {
+  const std::size_t n = scene_.head.planes ? tets_.size() : scene_.head.n_worst;
+  scene_.blocks.emplace_back("tet_ids", base64(tets_.data(), sizeof(int) * n));
+  scene_.blocks.emplace_back("face_ids", base64(face_tet_.data(), sizeof(int) * face_tet_.size()));
+}
+
+/// A grid of cells with the least Q of the tets in each, in place of tets that are too many for the page. A tet is in
+/// the cells of its centroid and of the points halfway from there to its corners.
+void SceneMaker::write_cells() {
+  if (!scene_.head.planes) return;
+  const std::vector<double>& q = *field(file_.cell_data, "mean_ratio");
+  const Vec3 size = box_.sizes();
+  double volume = 0;
+  for (const Tet& t : mesh_.C)
+    volume +=
+        std::abs(
+            (mesh_.V[t[1]] - mesh_.V[t[0]]).cross(mesh_.V[t[2]] - mesh_.V[t[0]]).dot(mesh_.V[t[3]] - mesh_.V[t[0]])) /
+        6;
+  const double edge = std::max(std::cbrt(kTetsPerCell * volume / static_cast<double>(mesh_.C.size())),
+                               std::cbrt(size.prod() / kMostCells));
+  std::array<int, 3>& n = scene_.head.cells.emplace();
+  for (int k = 0; k < 3; ++k) n[k] = std::max(1, static_cast<int>(std::ceil(size[k] / edge)));
+  std::vector<std::uint8_t> least(static_cast<std::size_t>(n[0]) * n[1] * n[2], 0);
+  const auto put = [&](const Vec3& x, std::uint8_t value) {
+    std::size_t at = 0;
+    for (int k = 2; k >= 0; --k) {
+      const int i = static_cast<int>((x[k] - box_.min()[k]) / std::max(size[k], 1e-300) * n[k]);
+      at = at * n[k] + std::clamp(i, 0, n[k] - 1);
+    }
+    if (least[at] == 0 || value < least[at]) least[at] = value;
+  };
+  const auto [q0, q1] = scene_.head.quality;
+  for (std::size_t t = 0; t < mesh_.C.size(); ++t) {
+    const auto value = static_cast<std::uint8_t>(1 + in_known_steps(q[t], q0, q1));
+    Vec3 centre = Vec3::Zero();
+    for (const int v : mesh_.C[t]) centre += mesh_.V[v] / 4;
+    put(centre, value);
+    for (const int v : mesh_.C[t]) put((centre + mesh_.V[v]) / 2, value);
+  }
+  write_bytes("cells", least);
 }
 
 void SceneMaker::write_curves(const SolverMesh& divided) {
@@ -231,25 +242,11 @@ void SceneMaker::write_curves(const SolverMesh& divided) {
 }
 
 void SceneMaker::write_positions(const char* name, const std::vector<Vec3>& points) {
-  std::vector<std::uint16_t> steps;
-  const Vec3 scale = kSteps16 * box_.sizes().cwiseMax(1e-300).cwiseInverse();
-  for (const Vec3& x : points) {
-    for (int k = 0; k < 3; ++k)
-      steps.push_back(static_cast<std::uint16_t>(std::lround((x[k] - box_.min()[k]) * scale[k])));
-  }
-  scene_.blocks.emplace_back(name, base64(steps.data(), 2 * steps.size()));
+  scene_.blocks.emplace_back(name, detail::position_block(points, box_.min(), box_.sizes()));
 }
 
 void SceneMaker::write_indices(const char* name, const std::vector<FacedTet>& list) {
-  if (scene_.head.index_bytes == 2) {
-    std::vector<std::uint16_t> ids;
-    for (const FacedTet& t : list) {
-      for (const int v : t) ids.push_back(static_cast<std::uint16_t>(v));
-    }
-    scene_.blocks.emplace_back(name, base64(ids.data(), 2 * ids.size()));
-  } else {
-    scene_.blocks.emplace_back(name, base64(list.data(), sizeof(FacedTet) * list.size()));
-  }
+  scene_.blocks.emplace_back(name, detail::index_block(list, scene_.head.index_bytes));
 }
 
 void SceneMaker::write_values() {
@@ -349,13 +346,15 @@ ReportScene SceneMaker::operator()(const SolverMesh& divided) {
       for (int& v : t) v = shown(v);
     }
   }
-  scene_.head.index_bytes = shown_.size() <= kSteps16 + 1 ? 2 : 4;
+  scene_.head.index_bytes = detail::index_bytes_for(shown_.size());
   write_indices("faces", faces);
   write_indices("tets", tets);
   std::vector<Vec3> positions;
   for (const int v : shown_) positions.push_back(mesh_.V[v]);
   write_positions("positions", positions);
   write_values();
+  write_ids();
+  write_cells();
   write_curves(divided);
   take_points();
   return std::move(scene_);
@@ -387,6 +386,7 @@ Json to_json(const SceneHead& head) {
           {"n_worst", head.n_worst},
           {"layer", head.layer},
           {"planes", json_of(head.planes)},
+          {"cells", json_of(head.cells)},
           {"index_bytes", head.index_bytes},
           {"ranges", ranges},
           {"support_radius", head.support_radius},

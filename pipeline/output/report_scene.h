@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,9 +16,9 @@ namespace umtet {
 /// Maximum amount of a mesh in a report of some megabytes.
 struct ReportCaps {
   std::size_t faces = 150'000;
-  std::size_t tets = 150'000;  ///< 1.3 MB; of a larger mesh, only tets at the middle planes of its box are shown
-  std::size_t points = 30'000;
-  std::size_t worst = 500;  ///< worst tets, ascending in quality; they come first and are never left out
+  std::size_t tets = 150'000;   ///< 1.3 MB; of a larger mesh, only tets at the middle planes of its box are shown
+  std::size_t points = 30'000;  ///< 0: none
+  std::size_t worst = 500;      ///< worst tets, ascending in quality; they come first and are never left out
 };
 
 /// The meaning of the arrays of a scene, and the amount of the mesh in them.
@@ -34,8 +35,9 @@ struct SceneHead {
   std::size_t n_tets = 0, n_tets_shown = 0;
   std::size_t n_worst = 0;  ///< number of worst tets, which come first, ascending in quality
   double layer = 0;         ///< a tet is drawn if the cut is within this distance of its centroid, model units
-  std::optional<std::vector<int>> planes;  ///< axes along which tets can be cut; none: any plane is possible
-  int index_bytes = 0;                     ///< bytes of an index: 2 or 4
+  std::optional<std::vector<int>> planes;   ///< axes along which tets can be cut; none: any plane is possible
+  std::optional<std::array<int, 3>> cells;  ///< numbers of cells along the axes of the box, if not all tets are shown
+  int index_bytes = 0;                      ///< bytes of an index: 2 or 4
   struct Range {
     double least = 0, most = 0;
   };
@@ -62,6 +64,11 @@ Json to_json(const SceneHead& head);
 ///   tet_quality, face_quality, face_deviation, vertex_support, vertex_edge_length   one byte each, in 255ths of
 ///   head.ranges
 ///   face_patch   one byte each, if there are several patches: index into head.patches, modulo 256
+///   tet_ids      uint32: ids in mesh.vtu of the worst tets; the others ascend if all are shown, else of all tets
+///   face_ids     uint32: id in mesh.vtu of the tet of each face
+///   cells        if not all tets are shown: one byte per cell of a grid of the box, x first; 0: no tet; else 1 plus
+///   the
+///                least Q in the cell, in 254ths of head.ranges
 ///   points       3 x uint16 per sample, in 65535ths of the box
 ///   curves       6 x uint16 per edge of a curve, if there are any: its ends, in 65535ths of the box
 ///   vertex_field_N   one byte each, or three for colours, of head.fields[N], in 254ths of the range; 255: no value

@@ -53,7 +53,14 @@ constexpr const char* kScript = R"(# umtet view: the stages of a case in ParaVie
 import os
 from paraview.simple import *
 
+# The case may have been moved since: the folder around this script counts, where ParaView tells it.
 case = {case}
+try:
+    here = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    if os.path.exists(os.path.join(here, "5-view/psi.vti")):
+        case = here
+except NameError:
+    pass
 def path(name):
     return os.path.join(case, name)
 def shown(source, name, **properties):
@@ -65,10 +72,17 @@ def shown(source, name, **properties):
 def coloured(display, association, array):
     ColorBy(display, (association, array))
     display.RescaleTransferFunctionToDataRange(False)
+    display.SetScalarBarVisibility(view, True)
+def hidden(source, name, association, array):
+    coloured(shown(source, name), association, array)
+    HideScalarBarIfNotNeeded(GetColorTransferFunction(array), view)
+    Hide(source, view)
 
 view = GetActiveViewOrCreate("RenderView")
 if os.path.exists(path("1-cloud/cloud.ply")):
     shown(PLYReader(FileNames=[path("1-cloud/cloud.ply")]), "1 samples", Representation="Point Gaussian", GaussianRadius={radius})
+if os.path.exists(path("1-cloud/marked.vtp")):
+    hidden(XMLPolyDataReader(FileName=[path("1-cloud/marked.vtp")]), "1 samples dropped, turned, doubted", "POINTS", "mark")
 psi = XMLImageDataReader(FileName=[path("5-view/psi.vti")])
 cut = Slice(Input=psi, SliceType="Plane")
 cut.SliceType.Origin = {centre}
@@ -76,6 +90,12 @@ cut.SliceType.Normal = [0.0, 0.0, 1.0]
 coloured(shown(cut, "2 psi, cut", Opacity=0.6), "POINTS", "psi")
 zero = Contour(Input=psi, ContourBy=["POINTS", "psi"], Isosurfaces=[0.0])
 coloured(shown(zero, "2 psi = 0, by slope", Opacity=0.25), "POINTS", "grad_psi")
+for name in ("2-level-set/features.vtp", "3-mesh/features.vtp"):
+    if os.path.exists(path(name)):
+        hidden(XMLPolyDataReader(FileName=[path(name)]), name[0] + " sharp edges", "CELLS", "angle_deg")
+for name, title in (("3-mesh/omega_h.vtu", "3 chosen tets"), ("3-mesh/projected.vtu", "3 projected tets")):
+    if os.path.exists(path(name)):
+        hidden(XMLUnstructuredGridReader(FileName=[path(name)]), title, "CELLS", "mean_ratio")
 mesh = XMLUnstructuredGridReader(FileName=[path("3-mesh/mesh.vtu")])
 tets = Clip(Input=mesh, ClipType="Plane")
 tets.ClipType.Origin = {centre}
@@ -87,6 +107,13 @@ if support_radius is not None:
     # In front of the tets: where no sample is near, up to the line at which the guess begins.
     guessed = Clip(Input=ExtractSurface(Input=mesh), ClipType="Scalar", Scalars=["POINTS", "support"], Value=support_radius, Invert=0)
     coloured(shown(guessed, "3 closed holes, by distance to samples"), "POINTS", "support")
+if os.path.exists(path("3-mesh/defects.vtp")):
+    # Spheres as wide as the defects.
+    defects = Glyph(Input=XMLPolyDataReader(FileName=[path("3-mesh/defects.vtp")]), GlyphType="Sphere")
+    defects.ScaleArray = ["POINTS", "size_over_h"]
+    defects.ScaleFactor = {h}
+    defects.GlyphMode = "All Points"
+    coloured(shown(defects, "3 defects", Opacity=0.4), "POINTS", "kind")
 if os.path.exists(path("3-mesh/iterates.pvd")):
     iterates = PVDReader(FileName=path("3-mesh/iterates.pvd"))
     RenameSource("3 iterates", iterates)
@@ -127,7 +154,7 @@ std::vector<fs::path> write_view(const CasePaths& paths, Progress& progress) {
   write_text_artefact(
       files[1],
       fmt::format(fmt::runtime(kScript), fmt::arg("case", python_text(paths.root)),
-                  fmt::arg("radius", .002 * domain.diagonal),
+                  fmt::arg("radius", .002 * domain.diagonal), fmt::arg("h", h),
                   fmt::arg("support_radius", has_holes ? fmt::format("{:.17g}", support->radius) : "None"),
                   fmt::arg("centre", fmt::format("[{:.17g}, {:.17g}, {:.17g}]", centre.x(), centre.y(), centre.z()))));
   return files;

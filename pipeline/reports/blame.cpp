@@ -12,6 +12,9 @@ namespace {
 
 // A fit tolerates a few wrong normals; a patch with this share of them is a separate wall in psi.
 constexpr double kManyWrong = .05;
+// Share of neighbouring pairs whose normals agree if 15 % of the normals are turned at random: 1 - 2 (.15) (.85), as
+// consistency() explains.
+constexpr double kLeastConsistent = .745;
 // In units of h: sizes decrease until the noise is .3 of an edge (kMostNoise), or halfway there.
 constexpr double kNoisy = .15;
 // In units of h: from this value on, the mesh shows the noise of the samples.
@@ -52,6 +55,15 @@ std::optional<Blame> blame_of_normals(const MeshMeasures& m) {
     return Blame{"normals", fmt::format("{:.2g} % of the normals point against grad psi", 100 * facts.opposed), remedy};
   }
   return std::nullopt;
+}
+
+/// Given normals that contradict their neighbours bound no body, wherever there are samples.
+std::optional<Blame> blame_of_contradictions(const MeshMeasures& m) {
+  if (!m.input || !(m.input->consistency < kLeastConsistent)) return std::nullopt;
+  return Blame{
+      "normals", fmt::format("{:.0f} % of the normals agree with their neighbours", 100 * m.input->consistency),
+      m.input->normals_given ? "--normals estimate, or more samples where two sides of the body are close"
+                             : "a cloud with normals, or --orient-from FILE with the positions of the scanner"};
 }
 
 std::optional<Blame> blame_of_noise(const MeshMeasures& m) {
@@ -118,6 +130,17 @@ Blame blame_of_psi(const MeshMeasures& m) {
 
 }  // namespace
 
+Blame blame_for_failure(Stage at_work, const std::string& message, const std::optional<InputFacts>& facts) {
+  if (at_work != Stage::Cloud) {
+    MeshMeasures m;
+    m.input = facts;
+    if (auto blame = blame_of_contradictions(m)) return *blame;
+    if (auto blame = blame_of_normals(m)) return *blame;
+  }
+  const char* stage = at_work == Stage::Cloud ? "input" : at_work == Stage::LevelSet ? "level set" : "mesh";
+  return {stage, message.substr(0, message.find('\n')), ""};
+}
+
 Blame blame_for(const Certificate& c) {
   const MeshMeasures& m = c.measured;
   const std::optional<double>& gate = c.verdict.min_quality_gate;
@@ -126,6 +149,7 @@ Blame blame_for(const Certificate& c) {
         "mesh", fmt::format("the minimum Q is {:.4f}", m.mesh.quality.min),
         fmt::format("another --h (this was {:.4g}), which moves the worst tets, or a lower --min-quality", m.mesh.h)};
   }
+  if (auto blame = blame_of_contradictions(m)) return *blame;
   if (auto blame = blame_of_guesses(m, input_defects(m))) return *blame;
   if (auto blame = blame_of_normals(m)) return *blame;
   if (auto blame = blame_of_noise(m)) return *blame;

@@ -5,6 +5,7 @@
 #include "pipeline/reports/defect_json.h"
 #include "pipeline/reports/label_json.h"
 #include "pipeline/reports/mesh_json.h"
+#include "pipeline/reports/region_json.h"
 
 namespace umtet {
 
@@ -129,6 +130,14 @@ Json to_json(const MeshCheck& check) {
   json.update(to_json(check.mesh));
   json["order"] = check.second_order ? 2 : 1;
   json["second_order"] = check.second_order ? json_by_fields(*check.second_order) : Json(nullptr);
+  json["regions"] = json["interfaces"] = json["unshared_faces"] = nullptr;
+  if (check.regions) {
+    const auto& [file, certificate] = *check.regions;
+    json["regions"] = json_of_regions(certificate, file.names);
+    for (Json& region : json["regions"]) region["mark"] = file.marks[region["region"].get<std::size_t>()];
+    json["interfaces"] = json_of_interfaces(certificate, file.names, false);
+    json["unshared_faces"] = certificate.n_unshared_faces;
+  }
   json["domain"] = to_json(check.support);
   json["valid"] = check.is_valid;
   json["places"] = check.defects ? json_by_fields(*check.defects) : Json(nullptr);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "body/fidelity/verdict.h"
+#include "mesh/io/file_regions.h"
+#include "mesh/regions/region_certificate.h"
 #include "pipeline/case/case_folder.h"
 #include "pipeline/case/parameters.h"
 #include "pipeline/case/record.h"
@@ -46,12 +48,19 @@ struct Certificate {
   std::optional<CertificateRun> run;  ///< none for a mesh that was never in a case
 };
 
+/// The regions of a mesh from a file.
+struct RegionCheck {
+  FileRegions file;               ///< the marks of the tets
+  RegionCertificate certificate;  ///< by region; not compared with sheets
+};
+
 /// Measurements and verdict of a mesh from a file: a Certificate without the parts that need more than the mesh.
 struct MeshCheck {
   std::string file;                  ///< path as given by the user
   std::optional<std::string> units;  ///< unit of lengths, for the reader
   MeshCertificate mesh;
   std::optional<SecondOrderReport> second_order;  ///< set for tets with 10 nodes
+  std::optional<RegionCheck> regions;             ///< set for tets of several regions, without a case
   std::optional<SupportReport> support;           ///< set if the case has samples
   bool is_valid = true;
   std::optional<DefectReport> defects;  ///< defects; none without a case to compare with

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/reports/region_lines.h"
+
 namespace umtet {
 namespace {
 
@@ -236,9 +238,60 @@ std::string time_line(const std::optional<CertificateRun>& run) {
   return out + fmt::format(" peak memory {} MB\n", show(run->peak_memory_MB, "{:.0f}"));
 }
 
+/// Returns what was meshed: "one closed body of genus 1".
+std::string body_text(const MeshCertificate::Boundary& b) {
+  if (!b.closed_manifold) return "a boundary that is NOT a closed manifold";
+  if (b.components == 1)
+    return b.genus == 0 ? "one body without handles" : fmt::format("one body of genus {}", b.genus);
+  return fmt::format("{} closed surfaces, genus {}", b.components, b.genus);
+}
+
+/// Returns the cause of a failure, else the first doubt, and the number of the others.
+std::string doubts_line(const Certificate& c) {
+  const Verdict& v = c.verdict;
+  const std::size_t n_holes = c.measured.domain.support ? c.measured.domain.support->n_closed_holes : 0;
+  std::vector<std::string> doubts = v.reasons;
+  for (const std::string& what : v.defects) doubts.push_back(what);
+  for (const std::string& what : v.accepted) doubts.push_back("accepted: " + what);
+  if (n_holes > 0) doubts.push_back(counted(n_holes, "hole", "holes") + " closed where there are no samples");
+  if (c.measured.cloud && c.measured.cloud->n_missed_places > 0)
+    doubts.push_back("samples missed at " + counted(c.measured.cloud->n_missed_places, "place", "places"));
+  const auto others = [](std::size_t n) {
+    return n == 0 ? std::string() : fmt::format(" ({} more: -v)", thousands(n));
+  };
+  if (c.blame) {
+    return fmt::format("blame     {}: {}; try {}{}\n", c.blame->stage, c.blame->number, c.blame->remedy,
+                       doubts.empty() ? "" : fmt::format(" ({}: -v)", counted(doubts.size(), "reason", "reasons")));
+  }
+  if (doubts.empty()) return "doubts    none\n";
+  return "doubts    " + doubts.front() + others(doubts.size() - 1) + "\n";
+}
+
 std::string suffix(const std::optional<std::string>& units) { return units ? " " + *units : ""; }
 
 }  // namespace
+
+std::string short_summary(const Certificate& c) {
+  const std::string unit = suffix(c.units);
+  const MeshMeasures& m = c.measured;
+  const std::string judged = c.verdict.passes() ? "" : " (" + judgements(c.verdict, has_input(m)) + ")";
+  const std::string asked =
+      c.n_tets_asked ? fmt::format(" (requested: {})", thousands(static_cast<std::size_t>(*c.n_tets_asked))) : "";
+  std::string out =
+      fmt::format("verdict   {}{}: {} tets{}, h = {}{}, {}, volume {}{}\n", c.verdict.word(), judged,
+                  thousands(m.mesh.n_tets), asked, show(m.mesh.h, "{:.4g}"), unit, body_text(m.mesh.boundary),
+                  show(m.mesh.volume, "{:.5g}"), unit.empty() ? "" : unit + "^3");
+  if (!c.verdict.accept.empty()) out += fmt::format("          in force: --accept {}\n", c.verdict.accept);
+  out += fmt::format("quality   mean ratio at least {}, dihedral angles {} to {} degrees",
+                     show(m.mesh.quality.min, "{:.3f}"), show(m.mesh.quality.dihedral_min_deg, "{:.0f}"),
+                     show(m.mesh.quality.dihedral_max_deg, "{:.0f}"));
+  if (m.cloud) {
+    out += fmt::format("; 99 % of the samples within {} h of the mesh", show(m.cloud->p99 / m.mesh.h, "{:.2g}"));
+  } else if (m.mesh.boundary.max_centroid_distance_over_h) {
+    out += fmt::format("; faces within {} h of psi = 0", show(m.mesh.boundary.max_centroid_distance_over_h, "{:.2g}"));
+  }
+  return out + "\n" + doubts_line(c);
+}
 
 std::string summary(const Certificate& c) {
   const std::string unit = suffix(c.units);
@@ -253,6 +306,7 @@ std::string summary(const Certificate& c) {
 std::string summary(const MeshCheck& c) {
   const std::string judged = c.defects ? judgements(c.verdict, false) : c.is_valid ? "valid" : "NOT valid";
   return verdict_lines(c.verdict, judged, {}) + mesh_lines(c.mesh, suffix(c.units), {}) +
+         (c.regions ? region_lines(c.regions->certificate, c.regions->file.names, false) : "") +
          second_order_lines(c.second_order) + holes_line(c.support, suffix(c.units)) +
          (c.defects ? defects_line(*c.defects) : "");
 }

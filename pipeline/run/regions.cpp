@@ -7,15 +7,20 @@
 #include <utility>
 
 #include "body/errors.h"
+#include "body/regions/label_regions.h"
 #include "body/regions/region_bodies.h"
 #include "mesh/expression/expression.h"
 #include "mesh/io/solver_mesh.h"
 #include "mesh/io/tet_mesh_io.h"
 #include "pipeline/case/artefact.h"
 #include "pipeline/case/interrupt.h"
+#include "pipeline/case/label_names.h"
 #include "pipeline/domain/load_domain.h"
+#include "pipeline/output/export_case.h"
 #include "pipeline/reports/region_json.h"
+#include "pipeline/reports/region_lines.h"
 #include "pipeline/run/run.h"
+#include "reconstruct/io/grid_io.h"
 
 namespace umtet {
 namespace {
@@ -54,35 +59,63 @@ RegionBody body_of_file(const NamedSource& body, const RegionsRequest& request, 
   return made;
 }
 
+/// \throw GridRefused  an image without labels
+RegionBodyMesh mesh_image(const RegionsRequest& request, const RegionBodyOptions& options) {
+  const Grid grid = read_grid(request.image);
+  if (kind_of(grid) != GridKind::Segmentation)
+    throw GridRefused(request.image.string() + ": this is no segmentation: its values are not the numbers of parts");
+  return mesh_label_regions(grid, parse_label_names(request.parameters.output().label_names), options);
+}
+
+RegionBodyMesh mesh_bodies(const RegionsRequest& request, const RegionBodyOptions& options, Progress& progress) {
+  std::vector<RegionBody> bodies;
+  bodies.reserve(request.bodies.size());
+  for (const NamedSource& body : request.bodies)
+    bodies.push_back(is_file(body.source) ? body_of_file(body, request, progress) : body_of_formula(body));
+  return mesh_region_bodies(bodies, options, request.overlap);
+}
+
 std::string summary_of(const RegionBodyMesh& made) {
-  const RegionCertificate& c = made.certificate;
-  std::string text =
-      fmt::format("{:<16} {:>10} {:>8} {:>8} {:>14} {:>7}\n", "region", "tets", "least Q", "1 % Q", "volume", "pieces");
-  for (const RegionMeasures& m : c.regions)
-    text += fmt::format("{:<16} {:>10} {:>8.3f} {:>8.3f} {:>14.6g} {:>7}\n", made.names[m.region], m.certificate.n_tets,
-                        m.certificate.quality.min, m.certificate.quality.p01, m.certificate.volume, m.n_pieces);
-  for (const InterfaceMeasures& m : c.interfaces)
-    text += fmt::format("interface {}|{}: {} faces, vertices within {:.1g} h, face centres within {:.2g} h\n",
-                        made.names[m.region], made.names[m.other], m.n_faces, m.max_vertex_distance,
-                        m.max_centroid_distance);
+  std::string text = region_lines(made.certificate, made.names, true);
   for (const MissedBodySamples& m : made.missed)
     text += fmt::format("samples of {}: {} on its visible part, the farthest {:.2g} h from a vertex\n",
                         made.names[m.region], m.n_visible, m.farthest / made.h);
+  if (made.match)
+    text += fmt::format("opposite sides: {} pairs of vertices, {} faces match, {} are surfaces of bodies\n",
+                        made.match->n_pairs, made.match->sides.size(), made.match->n_unmatched);
+  for (const RegionVoxels& r : made.voxels)
+    text += fmt::format("voxels of {}: volume {:.6g}, {:+.2f} % in the mesh\n", made.names[r.region],
+                        r.volume_of_voxels, 100 * (r.volume / r.volume_of_voxels - 1));
   if (made.reasons.empty())
-    return text + fmt::format("verdict: pass (valid, fits psi{})\n", made.missed.empty() ? "" : ", fits the samples");
+    return text + fmt::format("verdict: pass (valid, fits psi{}{})\n", made.missed.empty() ? "" : ", fits the samples",
+                              made.voxels.empty() ? "" : ", fits the voxels");
   text += "verdict: fail\n";
   for (const std::string& reason : made.reasons) text += "  " + reason + "\n";
   return text;
 }
 
+/// Numbers of vertices, from 0, and how many periods the copy is away.
+void write_pairs(const fs::path& path, const std::vector<PeriodicPair>& pairs) {
+  std::ofstream out(path);
+  out << "vertex,copy,x,y,z\n";
+  for (const PeriodicPair& p : pairs)
+    out << fmt::format("{},{},{},{},{}\n", p.vertex, p.copy, p.periods[0], p.periods[1], p.periods[2]);
+}
+
 }  // namespace
+
+bool is_file(const std::string& source) {
+  std::error_code ignored;  // a formula may be too long for the name of a file
+  return fs::exists(source, ignored);
+}
 
 NamedSource named_source(const std::string& text) {
   const std::size_t at = text.find('=');
   if (at == std::string::npos || at + 1 == text.size())
-    throw UsageError(fmt::format("regions: {}: write NAME=FORMULA or NAME=FILE", text));
+    throw UsageError(
+        fmt::format("regions: {}: write NAME=FORMULA or NAME=FILE, or the path of an image of labels", text));
   NamedSource body{text.substr(0, at), text.substr(at + 1)};
-  if (const std::string problem = problem_of_name(body.name); !problem.empty())
+  if (const std::string problem = problem_of_region_name(body.name); !problem.empty())
     throw UsageError(fmt::format("regions: {}: {}", body.name, problem));
   return body;
 }
@@ -92,12 +125,11 @@ RegionsOutcome mesh_regions(const RegionsRequest& request, Progress& progress) {
                             .tets = request.parameters.mesh().tets,
                             .box = parse_box(request.parameters.mesh().box),
                             .has_outside = request.has_outside,
+                            .is_periodic = request.is_periodic,
                             .context = until_interrupted()};
   options.context.progress = [&](const char* step, double fraction) { progress.report("regions", step, fraction); };
-  std::vector<RegionBody> bodies;
-  for (const NamedSource& body : request.bodies)
-    bodies.push_back(fs::exists(body.source) ? body_of_file(body, request, progress) : body_of_formula(body));
-  const RegionBodyMesh made = mesh_region_bodies(bodies, options);
+  const RegionBodyMesh made =
+      request.image.empty() ? mesh_bodies(request, options, progress) : mesh_image(request, options);
 
   RegionsOutcome outcome;
   outcome.document = document_of_regions(made);
@@ -105,13 +137,21 @@ RegionsOutcome mesh_regions(const RegionsRequest& request, Progress& progress) {
   outcome.code = made.reasons.empty() ? ExitCode::Success : ExitCode::GateFailed;
   MeshFile file = with_standard_data(made.mesh.mesh, made.mesh.background_vertex, made.mesh.background_tet);
   file.cell_data["region"] = std::vector<std::int64_t>(made.mesh.region.begin(), made.mesh.region.end());
+  for (std::size_t r = 0; r < made.names.size(); ++r) file.region_names[static_cast<std::int64_t>(r)] = made.names[r];
   fs::create_directories(request.folder);
   outcome.files = {request.folder / "regions.vtu", request.folder / "regions.json"};
+  for (const fs::path& former : exported_files(CasePaths{request.folder})) fs::remove(former);
   write_artefact(outcome.files[0], [&](const fs::path& path) { write_vtu(path, file); });
   write_artefact(outcome.files[1], [&](const fs::path& path) {
     std::ofstream out(path);
     out << outcome.document.dump(2) << '\n';
   });
+  if (made.match) {
+    outcome.files.push_back(request.folder / "periodic.csv");
+    write_artefact(outcome.files.back(), [&](const fs::path& path) { write_pairs(path, made.pairs); });
+  } else {
+    fs::remove(request.folder / "periodic.csv");  // of a former mesh
+  }
   return outcome;
 }
 

@@ -7,6 +7,8 @@
 #include "body/given_triangles.h"
 #include "body/scan/cloud_preparation.h"
 #include "body/sizing/wanted_detail.h"
+#include "pipeline/case/exit_code.h"
+#include "pipeline/case/failure_file.h"
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
@@ -45,6 +47,9 @@ class CaseRun {
   /// Moves new results into place, and writes certificate and report.
   /// @param records  records of stages()
   RunOutcome finish(const std::vector<StageRecord>& records);
+  /// Stores why the run ended, and writes the report of the stages that are done if no report of a mesh is in its
+  /// place.
+  void tell_failure(const std::exception_ptr& error);
 
  private:
   std::optional<Parameters> former_parameters();
@@ -75,6 +80,7 @@ class CaseRun {
   Handover handover_;
   const StageContext context_;
   RunOutcome outcome_;
+  Stage at_work_ = Stage::Cloud;  ///< the stage that was made last
 };
 
 /// Returns the parameters of case.toml; none if the file does not exist or is unusable.
@@ -270,6 +276,7 @@ StageRecord CaseRun::ensure(Stage stage) {
 
 void CaseRun::make(Stage stage) {
   set_work_at_hand(to_string(stage));
+  at_work_ = stage;
   try {
     if (stage == Stage::Cloud) {
       if (source().empty()) throw UsageError("no cloud given");
@@ -378,6 +385,7 @@ RunOutcome CaseRun::finish(const std::vector<StageRecord>& records) {
   handover_.parts.reset();
   replace_former(context_, paths_, outcome_.stages_run);
   write_parameters(paths_, parameters_);
+  remove_failure(paths_);
   for (const StageRecord& record : records) {
     for (const RecordedFile& f : record.outputs) outcome_.files.push_back(paths_.folder(record.stage) / f.name);
   }
@@ -389,13 +397,32 @@ RunOutcome CaseRun::finish(const std::vector<StageRecord>& records) {
   return std::move(outcome_);
 }
 
+/// A failure to tell a failure must not hide the first one.
+void CaseRun::tell_failure(const std::exception_ptr& error) {
+  try {
+    const Failure failure = failure_of(error);
+    write_failure(paths_, {at_work_, failure.code, failure.message});
+    const bool is_told = failure.code == ExitCode::ReconstructionFailed || failure.code == ExitCode::MeshingImpossible;
+    const CasePaths former{paths_.root};
+    if (!is_told || !request_.report || fs::exists(former.certificate()) || !fs::exists(former.parameters())) return;
+    write_unfinished_report(former, parameters_);
+    progress_.say("report: " + former.report().string() + " shows the stages that are done");
+  } catch (...) {
+  }
+}
+
 }  // namespace
 
 RunOutcome run_case(const RunRequest& request, Progress& progress) {
   const CaseLock lock(request.case_folder);
   CaseRun run(request, progress);
   run.begin();
-  return run.finish(run.make_all());
+  try {
+    return run.finish(run.make_all());
+  } catch (...) {
+    run.tell_failure(std::current_exception());
+    throw;
+  }
 }
 
 }  // namespace umtet

@@ -7,6 +7,7 @@
 #include "pipeline/case/interrupt.h"
 #include "pipeline/case/option_words.h"
 #include "pipeline/domain/body_options.h"
+#include "pipeline/meshing/defect_files.h"
 #include "pipeline/stages/scan_source.h"
 #include "pipeline/stages/stages.h"
 #include "reconstruct/io/input_file.h"
@@ -48,6 +49,10 @@ void run_cloud_stage(const StageContext& context, const InputFile& source) {
       if (!out) throw std::system_error(errno ? errno : EIO, std::generic_category(), "stream failed");
     });
     outputs.push_back("triangles.ply");
+  }
+  if (!prepared.marked.empty()) {
+    write_marked(context.paths.folder(Stage::Cloud) / kMarkedFile, prepared.marked);
+    outputs.emplace_back(kMarkedFile);
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   StageRun run = run_of_stage(seconds.count(), context.threads);

@@ -3,6 +3,7 @@
     reconstruct(points, normals)  -> LevelSet     a C2 level set psi of a point cloud
     mesh(psi, ...)                -> Mesh         a boundary-fitting mesh of {psi < 0}, with its certificate
     mesh(psi, ..., comm=comm)     -> MeshPart     the local mesh of this process, made by all processes of comm (mpi4py)
+    mesh_regions({"name": psi}, ...) -> RegionsMesh   one mesh of several bodies that share their interfaces
     UniversalMesh(box, h).update(psi) -> Update   meshes of a moving domain, in one background mesh
     certificate(points, tets)     -> dict         measurements of any tet mesh
 
@@ -21,7 +22,7 @@ or ReconstructionError; its `evidence` is a dict with status, positions and leng
 also returned: check `mesh.certified`.
 """
 import os
-from typing import Any, Callable, Optional, Union, overload
+from typing import Any, Callable, Mapping, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -31,18 +32,19 @@ from ._arrays import cloud_of, tets_of
 from ._core import Cancelled, LevelSet, MeshingError, ReconstructionError
 from ._mesh import Mesh, Update
 from ._parts import Communicator, MeshPart, mesh_of_all
+from ._regions import RegionsMesh
 from ._settings import box_of, settings
 
 __version__ = _core.__version__
 __all__ = [
-    "Cancelled", "LevelSet", "Mesh", "MeshPart", "MeshingError", "ReconstructionError", "UniversalMesh", "Update", "certificate",
-    "mesh", "reconstruct"
+    "Cancelled", "LevelSet", "Mesh", "MeshPart", "MeshingError", "ReconstructionError", "RegionsMesh", "UniversalMesh", "Update",
+    "certificate", "mesh", "mesh_regions", "reconstruct"
 ]
 
 Psi = Union[LevelSet, str, "os.PathLike[str]", Callable[[npt.NDArray[np.float64]], Any]]
 Progress = Callable[[str, float], Any]
 
-for _public in (Cancelled, MeshingError, ReconstructionError, Mesh, MeshPart, Update):
+for _public in (Cancelled, MeshingError, ReconstructionError, Mesh, MeshPart, RegionsMesh, Update):
     _public.__module__ = "umtet"  # the name that is printed
 
 _NOT_OF_A_MOVING_MESH = ("tets", "max_tets", "max_deviation", "effort", "order")
@@ -120,6 +122,24 @@ def mesh(psi: Psi, *, box: Optional[npt.ArrayLike] = None, t: Optional[float] = 
     if comm is not None:
         return mesh_of_all(comm, given, made, t, progress, threads)
     return Mesh(_core.mesh(given, made, t, progress, threads))
+
+
+def mesh_regions(bodies: Mapping[str, Psi], *, box: Optional[npt.ArrayLike] = None, h: Optional[float] = None,
+                 tets: Optional[int] = None, outside: bool = True, progress: Optional[Progress] = None,
+                 threads: int = 0) -> RegionsMesh:
+    """Makes one mesh of several bodies, as `umtet regions` does.
+
+    bodies: for each name a LevelSet, a formula or a callable; later bodies cover earlier ones.
+    box: what the mesh fills, with flat walls; required for formulas and callables. By default it leaves four edges around
+    the LevelSets.
+    h or tets: the edge length, or the number of tets (default 100000).
+    outside=False leaves the rest of the box out.
+
+    Returns a RegionsMesh, also if its certificate fails. Raises MeshingError if a body reaches the walls of the box, or if
+    none is in it.
+    """
+    given = settings(("mesh",), {"box": box_of(box), "h": h, "tets": tets})
+    return RegionsMesh(_core.mesh_regions(list(bodies.items()), given, outside, progress, threads))
 
 
 class UniversalMesh:

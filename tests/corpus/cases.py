@@ -20,7 +20,7 @@ STORED = pathlib.Path(__file__).resolve().parent / "files"
 TARGETS = {".stl": "triangles_stl", ".obj": "triangles_obj", ".off": "triangles_off",
            ".ply": "cloud_ply", ".pcd": "cloud_pcd", ".xyz": "cloud_xyz", ".pts": "cloud_xyz", ".csv": "cloud_xyz",
            ".asc": "cloud_xyz", ".vti": "level_set",
-           ".vtu": "mesh_vtu", ".msh": "mesh_msh", ".mesh": "mesh_mesh",
+           ".vtu": "mesh_vtu", ".msh": "mesh_msh", ".mesh": "mesh_mesh", ".inp": "mesh_inp",
            ".nrrd": "grid_nrrd", ".nii": "grid_nifti", ".vtk": "grid_vtk",
            ".feat": "lines", ".eMesh": "lines", ".lines": "lines",  # of OBJ
            ".grid": "grid_vti"}  # ImageData, which has any name here: .vti is that of our own level sets
@@ -363,6 +363,27 @@ def mesh_cases():
     yield "unused_nan", head + nodes % (b"1", b"5"), None  # node 1 is no number, but in no tet
     yield "node_twice", head + nodes % (b"1", b"4"), ["tet 1: it has its node 4 twice"]
     yield "no_place", head + nodes % (b"inf", b"5"), ["node 4: a coordinate is not"]
+
+
+def inp_cases():
+    nodes = b"*NODE\n1, 9, 9, nan\n2, 0, 0, 0\n3, 1, 0, 0\n4, 0, %s, 0\n5, 0, 0, 1\n"
+    tet = b"*ELEMENT, TYPE=C3D4, ELSET=a\n"
+    yield "empty", b"", ["no tets"]
+    yield "numbers", b"1, 2, 3\n", ["no keyword"]
+    yield "none", nodes % b"1", ["no tets"]
+    yield "shells", nodes % b"1" + b"*ELEMENT, TYPE=S3\n1, 2, 3, 4\n", ["no tets"]
+    yield "unused_nan", nodes % b"1" + tet + b"1, 2, 3, 4, 5\n", None  # node 1 is no number, but in no tet
+    yield "no_place", nodes % b"inf" + tet + b"1, 2, 3, 4, 5\n", ["node 4: a coordinate is not"]
+    yield "no_number", nodes % b"one" + tet + b"1, 2, 3, 4, 5\n", ["node coordinate: not a number"]
+    yield "node_twice", nodes % b"1" + tet + b"1, 2, 3, 4, 4\n", ["tet 1: it has its node 4 twice"]
+    yield "no_node", nodes % b"1" + tet + b"1, 2, 3, 4, 9\n", ["its node 9 does not exist"]
+    yield "short", nodes % b"1" + tet + b"1, 2, 3, 4\n", ["ends in an element"]
+    yield "short_before", nodes % b"1" + tet + b"1, 2, 3, 4\n*STEP\n", ["without all of its nodes"]
+    yield "long", nodes % b"1" + tet + b"1, 2, 3, 4, 5, 2\n", ["more nodes"]
+    yield "parts", b"*PART, NAME=a\n*PART, NAME=b\n", ["a second *PART"]
+    yield "same_numbers", nodes % b"1" + nodes % b"1" + tet + b"1, 2, 3, 4, 5\n", ["node 1 is given twice"]
+    far = b"*ELSET, ELSET=b, GENERATE\n-9223372036854775808, 9223372036854775807, 9223372036854775807\n"
+    yield "far", nodes % b"1" + tet + b"1, 2, 3, 4, 5\n" + far, None
 
 
 def vtu_cases():
@@ -852,6 +873,7 @@ HUGE = [
     ("zeros.vtu", b"", ["no <VTKFile"]),
     ("zeros.msh", b"", ["no $MeshFormat"]),
     ("zeros.mesh", b"", ["no MeshVersionFormatted"]),
+    ("zeros.inp", b"", ["no *NODE"]),
     ("zeros.nrrd", b"", ["neither VTK"]),
     ("count.nrrd", nrrd(b"", sizes="2000 2000 2000"), ["nodes, and at most"]),
     ("count.nii", nifti(b"", dim=(3, 2000, 2000, 2000, 1, 1, 1, 1)), ["nodes, and at most"]),
@@ -865,7 +887,7 @@ def made_cases():
         yield Case(name + ".ply", data, words, *(strict or [words]), target="triangles_ply")
     for suffix, family in ((".ply", ply_cases), (".pcd", pcd_cases), (".xyz", xyz_cases), (".pts", pts_cases),
                            (".csv", csv_cases), (".asc", asc_cases),
-                           (".las", las_cases), (".e57", e57_cases), (".points", unknown_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".vtu", vtu_cases),
+                           (".las", las_cases), (".e57", e57_cases), (".points", unknown_cases), (".msh", msh_cases), (".mesh", mesh_cases), (".inp", inp_cases), (".vtu", vtu_cases),
                            (".nrrd", nrrd_cases), (".nii", nifti_cases), (".vtk", vtk_cases), (".grid", image_cases),
                            (".stl", stl_cases), (".obj", obj_cases), (".off", off_cases),
                            (".feat", feat_cases), (".eMesh", emesh_cases), (".lines", line_cases),

@@ -18,7 +18,7 @@ MEGABYTES = 100
 ADDRESS_SPACE = 4 << 30
 # Sparse. Reading so much, if only for a checksum, takes longer than the seconds after which a call is killed.
 HUGE_BYTES = 64 << 30
-MESHES = (".vtu", ".msh", ".mesh", ".tets")
+MESHES = (".vtu", ".msh", ".mesh", ".inp", ".tets")
 TRIANGLES = (".stl", ".obj", ".off")
 
 

@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::filesystem::path file = argv[i];
     const std::string kind = file.extension();
-    if (kind == ".vtu" || kind == ".msh" || kind == ".mesh" || kind == ".tets") {
+    if (kind == ".vtu" || kind == ".msh" || kind == ".mesh" || kind == ".inp" || kind == ".tets") {
       answer<umtet::MeshFileRefused>(file, "read_tet_mesh", umtet::read_tet_mesh);
     } else if (kind == ".vti") {
       answer<umtet::LevelSetRefused>(file, "read_level_set", umtet::read_level_set);

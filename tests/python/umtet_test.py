@@ -315,6 +315,58 @@ class MeshTest(unittest.TestCase):
                 m.save(os.path.join(folder, "no", "ball.vtu"))
 
 
+class SeveralBodies(unittest.TestCase):
+    BOX = (-2, -2, -2, 2, 2, 2)
+
+    def test_formulas_make_the_mesh_of_the_program(self):
+        bodies = {"shell": BALL, "core": "x^2+y^2+z^2-.3"}
+        made = umtet.mesh_regions(bodies, box=self.BOX, tets=30000)
+        self.assertTrue(made.certified, made.certificate["reasons"])
+        self.assertEqual(made.names, ["outside", "shell", "core"])
+        self.assertEqual(len(made.region), len(made.tets))
+        x = made.points[made.tets]
+        volumes = np.einsum("ij,ij->i", np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), x[:, 3] - x[:, 0]) / 6
+        for region in made.certificate["regions"]:
+            self.assertAlmostEqual(volumes[made.region == region["region"]].sum(), region["volume"], 9)
+        self.assertEqual({name: len(faces) for name, faces in made.patches().items() if name != "walls"},
+                         {i["name"]: i["faces"] for i in made.certificate["interfaces"]})
+        if "UMTET_PROGRAM" not in os.environ:
+            self.skipTest("no program")
+        with tempfile.TemporaryDirectory() as folder:
+            words = [f"{name}={formula}" for name, formula in bodies.items()]
+            subprocess.run([os.environ["UMTET_PROGRAM"], "regions", *words, "--box=-2,-2,-2,2,2,2", "--tets", "30000", "-q",
+                            "-o", folder, "--export", "inp"], check=True, stdout=subprocess.DEVNULL)
+            self.assertEqual(json.loads(pathlib.Path(folder, "regions.json").read_text()), made.certificate)
+            made.save(pathlib.Path(folder, "mine.inp"))
+            self.assertEqual(pathlib.Path(folder, "mine.inp").read_bytes(),
+                             pathlib.Path(folder, "4-export/mesh.inp").read_bytes())
+
+    def test_level_sets_and_callables(self):
+        points, normals = egg()
+        made = umtet.mesh_regions({"egg": umtet.reconstruct(points, normals), "core": lambda x: (x**2).sum(1) - .09},
+                                  box=self.BOX, tets=100000, outside=False)
+        self.assertTrue(made.certified, made.certificate["reasons"])
+        self.assertEqual(set(made.region), {1, 2})
+        self.assertEqual(set(made.patches()), {"egg|core", "egg|outside"})
+        self.assertEqual(made.certificate["samples"][0]["missed"], 0)
+
+    def test_broken_contracts(self):
+        def mesh(bodies, **arguments):
+            return umtet.mesh_regions(bodies, **{"box": self.BOX, "h": .3, **arguments})
+
+        for bodies in ({"walls": BALL}, {"1": BALL}, {"outside": BALL}, {"a": BALL, "A": BALL}, {}):
+            with self.assertRaises(ValueError, msg=bodies):
+                mesh(bodies)
+        with self.assertRaises(ValueError):
+            mesh({"a": BALL}, box=None)
+        with self.assertRaises(TypeError):
+            mesh({"a": 3})
+        with self.assertRaises(umtet.MeshingError):
+            mesh({"a": "x^2+y^2+z^2-9"})
+        with self.assertRaises(ValueError):
+            mesh({"a": BALL}).save("a.stl")
+
+
 class Failures(unittest.TestCase):
     def test_too_small_a_box_has_evidence(self):
         with self.assertRaises(umtet.MeshingError) as e:
@@ -634,7 +686,7 @@ class Types(unittest.TestCase):
 
     def test_the_stub_is_what_is_there(self):
         with open(f"{self.folder}/of_pybind", "w") as file:  # its metaclass, and objects that Python cannot make
-            file.write("".join(f"umtet._core.{name}(.__init__)?\n" for name in ("LevelSet", "Mesh", "Moving")))
+            file.write("".join(f"umtet._core.{name}(.__init__)?\n" for name in ("LevelSet", "Mesh", "Moving", "RegionsMesh")))
         made = self.mypy("mypy.stubtest", "--allowlist", "of_pybind", "umtet._core", cwd=self.folder)
         self.assertEqual(made.returncode, 0, made.stdout)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Both sides of a surface, and curves where three regions meet: region_meshes.py UMTET [--positions=N] [--tets=N,N]
+"""Both sides of a surface, and curves where three regions meet: region_meshes.py UMTET [--positions=N] [--tets=N,N] [BODY ...]
 
 Makes meshes of bodies by `umtet regions`, in N random positions each (rotations, and shifts by up to an edge), and prints
 the worst least Q of each side, with the time of `umtet mesh` for the same body and h. The background ends in the box.
@@ -21,6 +21,15 @@ BODIES = {
     "T6, genus 28": ([T6], 2),
     "nested spheres": (["x^2+y^2+z^2-1", "x^2+y^2+z^2-.36"], 1.4),
     "two spheres that overlap": (["(x-.5)^2+y^2+z^2-.64", "(x+.5)^2+y^2+z^2-.64"], 1.8),
+}
+BALL = "x^2+y^2+z^2-1"
+# Of these, a point belongs to the least; the angles are those between the sheets at their curves.
+LEAST = {
+    "ball cut in two, 90/90/180 degrees": ([f"{BALL}+.02*x", f"{BALL}-.02*x"], 1.4),
+    "ball cut off its centre, 49/131/180 degrees": ([f"{BALL}+.02*(x-.65)", f"{BALL}-.02*(x-.65)"], 1.4),
+    "double bubble, 120/120/120 degrees": (["(x-.5)^2+y^2+z^2-1", "(x+.5)^2+y^2+z^2-1"], 1.9),
+    "ball in three, two corners": ([f"{BALL}+.3*x", f"{BALL}-.3*x+.25*y", f"{BALL}-.3*y"], 1.6),
+    "ball in four, eight corners": ([f"{BALL}+.3*x", f"{BALL}-.3*x+.25*y", f"{BALL}-.3*y", f"{BALL}+.4*z-.2*x"], 1.6),
 }
 
 
@@ -49,14 +58,17 @@ def cpu_of(words):
 
 def main():
     umtet = sys.argv[1]
-    options = dict(a[2:].split("=") for a in sys.argv[2:])
+    options = dict(a[2:].split("=") for a in sys.argv[2:] if a.startswith("--"))
+    chosen = [a for a in sys.argv[2:] if not a.startswith("--")]
     n_positions = int(options.get("positions", 3))
     sizes = [int(n) for n in options.get("tets", "100000").split(",")]
     print("| body | tets | positions that pass | least Q at the walls | outside | of bodies | 1 % Q | dihedral angles | CPU s | CPU s of one side |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
-        for name, (formulas, half) in BODIES.items():
+        for name, (formulas, half) in (BODIES | LEAST).items():
+            if chosen and name not in chosen:
+                continue
             for n_tets in sizes:
                 generator = random.Random(1)
                 passed, walls, outside, inside, one, angles, cpu, alone = 0, [], [], [], [], [], [], []
@@ -67,6 +79,8 @@ def main():
                     box = f"--box={','.join([str(-half)] * 3 + [str(half)] * 3)}"
                     words = [umtet, "regions", *(f"b{k}={f}" for k, f in enumerate(bodies)), box, "--tets", str(n_tets),
                              "-o", str(out), "--threads", "1", "-q"]
+                    if name in LEAST:
+                        words.append("--least")
                     done, seconds = cpu_of(words)
                     if done.returncode not in (0, 6):
                         print(f"{name}: {done.stderr.strip()}", file=sys.stderr)

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,6 +67,8 @@ struct NumberedMesh {
   std::vector<std::array<std::int64_t, 4>> tets;  ///< node numbers
   /// For tets with ten nodes, the other six in the order of QuadraticTet.
   std::vector<std::array<std::int64_t, 6>> mid_sides;
+  std::vector<std::int64_t> region = {};                  ///< mark of each tet; empty: the format has none
+  std::map<std::int64_t, std::string> region_names = {};  ///< names of marks
 };
 
 using MidSideNodes = std::array<int, 6>;
@@ -97,5 +100,6 @@ void drop_unused_vertices(MeshFile& file);
 MeshFile read_vtu(const std::filesystem::path& path);
 MeshFile read_msh(const std::filesystem::path& path);
 MeshFile read_medit(const std::filesystem::path& path);
+MeshFile read_inp(const std::filesystem::path& path);
 
 }  // namespace umtet::detail

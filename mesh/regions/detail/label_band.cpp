@@ -63,8 +63,9 @@ std::vector<std::uint8_t> regions_of_vertices(const RegionDomain& domain, const 
 }
 
 LabelBand::LabelBand(const RegionDomain& domain, const BackgroundMesh& background, const VertexLinks& links,
-                     const std::vector<std::uint8_t>& of_vertex, double reach, const Context& context)
-    : domain_(domain), background_(background), links_(links), band_(background.n_vertices()) {
+                     const std::vector<std::uint8_t>& of_vertex, double reach, const PeriodicCells* cells,
+                     const Context& context)
+    : domain_(domain), background_(background), links_(links), cells_(cells), band_(background.n_vertices()) {
   gather(of_vertex);
   if (leaves_background_) return;
   list_links(of_vertex);
@@ -85,11 +86,13 @@ void LabelBand::gather(const std::vector<std::uint8_t>& of_vertex) {
     for (std::size_t v = b * kWordsPerBlock * 64; v < end; ++v) {
       if (of_vertex[v] == 0) continue;
       const auto id = static_cast<std::int64_t>(v);
+      if (representative(id) != id) continue;
       if (background_.on_boundary(id)) {
         leaves = true;
         continue;
       }
-      links_.for_each(id, [&](std::int64_t w) {
+      links_.for_each(id, [&](std::int64_t copy) {
+        const std::int64_t w = representative(copy);
         if (label_of(w) >= of_vertex[v]) return;
         band_.insert_shared(id);
         band_.insert_shared(w);
@@ -103,7 +106,8 @@ void LabelBand::gather(const std::vector<std::uint8_t>& of_vertex) {
     IdSet next(background_.n_vertices());
     for_each_in_blocks(front, [&](std::size_t, std::int64_t v) {
       if (is_outermost(background_, v)) return;
-      links_.for_each(v, [&](std::int64_t w) {
+      links_.for_each(v, [&](std::int64_t copy) {
+        const std::int64_t w = representative(copy);
         if (static_cast<std::uint64_t>(w) < n && !band_.test(w)) next.insert_shared(w);
       });
     });
@@ -130,7 +134,8 @@ void LabelBand::list_links(const std::vector<std::uint8_t>& of_vertex) {
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t v) {
     if (!is_complete_[v]) return;
     std::size_t k = first_[v];
-    links_.for_each(ids_[v], [&](std::int64_t w) {
+    links_.for_each(ids_[v], [&](std::int64_t copy) {
+      const std::int64_t w = representative(copy);
       codes_[k++] = band_.test_any(w) ? band_.rank(w) : -1 - of_vertex[static_cast<std::size_t>(w)];
     });
   });
@@ -169,6 +174,12 @@ void LabelBand::measure(double reach, const Context& context) {
     is_movable[v] = is_complete_[v] != 0 && nearest <= reach;
   });
   for (const auto& list : distances_) n_evaluations_ += list.size();
+}
+
+Vec3 LabelBand::to_copy(int v, int k) const {
+  if (!cells_) return Vec3::Zero();
+  const std::int64_t w = links_.neighbour(ids_[static_cast<std::size_t>(v)], k);
+  return background_.position(w) - background_.position(cells_->representative(w));
 }
 
 double LabelBand::distance(int v, int a, int b) const {

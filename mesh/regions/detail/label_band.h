@@ -9,6 +9,7 @@
 #include "mesh/background/background_mesh.h"
 #include "mesh/background/vertex_links.h"
 #include "mesh/base/id_set.h"
+#include "mesh/regions/detail/periodic_cells.h"
 #include "mesh/regions/region_domain.h"
 
 namespace umtet::detail {
@@ -22,11 +23,17 @@ class LabelBand {
  public:
   /// @param of_vertex  regions_of_vertices()
   /// @param reach      in edges: only vertices this near to a sheet may change
+  /// @param cells      null, or the cells of a torus: the band then consists of representatives
   LabelBand(const RegionDomain& domain, const BackgroundMesh& background, const VertexLinks& links,
-            const std::vector<std::uint8_t>& of_vertex, double reach, const Context& context);
+            const std::vector<std::uint8_t>& of_vertex, double reach, const PeriodicCells* cells,
+            const Context& context);
 
   std::size_t size() const { return ids_.size(); }
   std::int64_t id(std::size_t v) const { return ids_[v]; }
+  Vec3 position(int v) const { return background_.position(ids_[static_cast<std::size_t>(v)]); }
+  /// From the representative of link vertex k of v to the link vertex itself; 0 but on a torus.
+  Vec3 to_copy(int v, int k) const;
+  double h(int v) const { return background_.h(ids_[static_cast<std::size_t>(v)]); }
   const LinkTopology& topology(int v) const { return links_.of_type(type_[v]); }
   /// The neighbours of v: their rank, or a code for label_beyond() of one that is not in the band.
   std::span<const int> link(int v) const {
@@ -51,6 +58,7 @@ class LabelBand {
     int patch;
     double distance;
   };
+  std::int64_t representative(std::int64_t v) const { return cells_ ? cells_->representative(v) : v; }
   void gather(const std::vector<std::uint8_t>& of_vertex);
   void list_links(const std::vector<std::uint8_t>& of_vertex);
   void find_near();
@@ -59,6 +67,7 @@ class LabelBand {
   const RegionDomain& domain_;
   const BackgroundMesh& background_;
   const VertexLinks& links_;
+  const PeriodicCells* cells_;
   IdSet band_;
   std::vector<std::int64_t> ids_;
   std::vector<int> type_, codes_;

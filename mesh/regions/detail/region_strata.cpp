@@ -1,6 +1,5 @@
 #include "mesh/regions/detail/region_strata.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,54 +8,14 @@
 #include <map>
 #include <utility>
 
+#include "mesh/regions/detail/vertex_places.h"
+
 namespace umtet::detail {
 namespace {
 
-constexpr int kMostSteps = 30;        // of Gauss's and Newton's method; it converges in a few
-constexpr double kArrived = 1e-11;    // in h
-constexpr double kFarthest = 2;       // in h, from the vertex
-constexpr double kLeastPivot = 1e-3;  // of unit gradients: below it sheets are parallel
 // Rounds in which a vertex of a curve goes halfway to the middle between its neighbours. Feet of a path that turns on
 // the lattice are otherwise as near as a tenth of an edge, and in places in the wrong order.
 constexpr int kSpreads = 10;
-
-/// The patches of the sheets between these regions, ascending.
-std::vector<int> patches_of(const RegionDomain& domain, RegionSet regions) {
-  std::vector<int> patches;
-  for (RegionSet as = regions; as != 0; as &= as - 1)
-    for (RegionSet bs = as & (as - 1); bs != 0; bs &= bs - 1)
-      patches.push_back(domain.patch(std::countr_zero(as), std::countr_zero(bs)));
-  std::sort(patches.begin(), patches.end());
-  patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
-  return patches;
-}
-
-/// The point near x where all patches are 0, in the least-squares sense, or x.
-Vec3 corner_near(const RegionDomain& domain, const std::vector<int>& patches, const Vec3& x, double h) {
-  Vec3 y = x;
-  Eigen::MatrixX3d A(patches.size(), 3);
-  Eigen::VectorXd b(patches.size());
-  for (int step = 0; step < kMostSteps; ++step) {
-    for (std::size_t k = 0; k < patches.size(); ++k) {
-      Vec3 g;
-      const double value = domain.boundary().patch(patches[k], y, &g), norm = g.norm();
-      const auto row = static_cast<Eigen::Index>(k);
-      A.row(row) = g.transpose() / norm;
-      b[row] = value / norm;
-    }
-    if (!A.allFinite() || !b.allFinite()) return x;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> solver;
-    solver.setThreshold(kLeastPivot);
-    solver.compute(A);
-    Vec3 move = solver.solve(b);
-    const double length = move.norm();
-    if (length > h) move *= h / length;
-    y -= move;
-    if ((y - x).norm() > kFarthest * h) return x;
-    if (length <= kArrived * h) break;
-  }
-  return y;
-}
 
 std::vector<Stratum> list_strata(const RegionDomain& domain, const RegionMesh& made, std::vector<int>& of_vertex) {
   std::vector<Stratum> list;
@@ -70,11 +29,9 @@ std::vector<Stratum> list_strata(const RegionDomain& domain, const RegionMesh& m
       continue;
     }
     of_vertex[v] = static_cast<int>(list.size());
-    Stratum s;
-    s.patches = patches_of(domain, made.regions_at[v]);
-    s.dimension = n == 2 ? 2 : n == 3 ? 1 : 0;
+    Stratum s = stratum_of(domain, made.regions_at[v]);
     if (s.dimension == 0) {
-      s.place = corner_near(domain, s.patches, made.mesh.V[v], made.h[v]);
+      s.place = common_zero(domain, s.patches, made.mesh.V[v], made.h[v]);
     } else {
       known[made.regions_at[v]] = of_vertex[v];
     }
@@ -105,11 +62,8 @@ std::vector<std::array<int, 2>> neighbours_on_curves(const RegionMesh& made, con
 
 }  // namespace
 
-RegionStrata::RegionStrata(const RegionDomain& domain, const BackgroundMesh& background, const RegionMesh& made)
-    : strata(domain.boundary(), list_strata(domain, made, of_vertex)) {
-  is_fixed.reserve(made.background_vertex.size());
-  for (const std::int64_t v : made.background_vertex) is_fixed.push_back(background.on_boundary(v) ? 1 : 0);
-}
+RegionStrata::RegionStrata(const RegionDomain& domain, const RegionMesh& made)
+    : strata(domain.boundary(), list_strata(domain, made, of_vertex)) {}
 
 std::vector<Vec3> RegionStrata::targets(const RegionMesh& made) const {
   const std::size_t n = of_vertex.size();

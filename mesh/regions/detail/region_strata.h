@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "mesh/background/background_mesh.h"
 #include "mesh/core/boundary_strata.h"
 #include "mesh/regions/region_domain.h"
 #include "mesh/regions/region_mesh.h"
@@ -12,7 +11,7 @@ namespace umtet::detail {
 /// The strata of a region mesh: a sheet for two regions at a vertex, a curve for three, a corner for four or more.
 struct RegionStrata {
   /// Finds the strata of the vertices from made.regions_at, made.mesh.V and made.h.
-  RegionStrata(const RegionDomain& domain, const BackgroundMesh& background, const RegionMesh& made);
+  RegionStrata(const RegionDomain& domain, const RegionMesh& made);
 
   /// The points that the vertices go to: corners to their place, vertices of curves to points that are spread along the
   /// curve; not finite for the foot on the stratum.
@@ -20,7 +19,6 @@ struct RegionStrata {
   std::vector<Vec3> targets(const RegionMesh& made) const;
 
   std::vector<int> of_vertex;  ///< -1: inside of a region
-  std::vector<char> is_fixed;  ///< vertices on the boundary of the background
   BoundaryStrata strata;
 };
 

@@ -18,7 +18,7 @@ struct CommandInputs {
   std::map<std::string, bool> switches;       ///< values of switches by key
   int jobs = 1;
   bool fresh = false, force = false, resume = false, collect = false, no_report = false, no_outside = false,
-       quiet = false, verbose = false;
+       least = false, periodic = false, quiet = false, verbose = false;
 };
 
 /// Makes a command from the values that were read.

@@ -1,342 +1,240 @@
-// The view of a mesh: reads the arrays in the page (see report_scene.h) and draws them when something
-// has changed. The data- attributes of <body> contain data for tests.
+// The controls of the page: stages, camera, colours, cut, marks. The data- attributes of <body> contain data for tests.
 "use strict";
 (function () {
+  const {strip, certificate, stages, layers, origin, radius, ramp, patchColours, kNoValue, number} = umtetScenes;
+  const {View, marks, kTetFaces} = umtetView;
   const $ = (id) => document.getElementById(id);
   const state = document.body.dataset;
+  const element = (tag, text, parent, cls) => {
+    const e = document.createElement(tag);
+    if (text) e.textContent = text;
+    if (cls) e.className = cls;
+    return parent ? parent.appendChild(e) : e;
+  };
   // Milliseconds since the page was requested.
-  const marks = {};
+  const times = {};
   const mark = (name) => {
-    marks[name] = Math.round(performance.now());
-    state.marks = JSON.stringify(marks);
+    times[name] = Math.round(performance.now());
+    state.marks = JSON.stringify(times);
   };
   mark("script");
-  const info = JSON.parse($("scene").textContent);
-  const ranges = info.ranges;
 
-  function bytes(name) {
-    const text = atob($("block-" + name).textContent);
-    const b = new Uint8Array(text.length);
-    for (let i = 0; i < b.length; ++i) b[i] = text.charCodeAt(i);
-    return b;
-  }
-  const has = (name) => $("block-" + name) !== null;
-  // Decodes data at the first use, so that the surface appears before it can be cut.
-  const once = (make) => {
-    let made;
-    return () => made === undefined ? (made = make()) : made;
-  };
-  const indices = (name) => {
-    const b = bytes(name);
-    return info.index_bytes === 2 ? new Uint16Array(b.buffer) : new Uint32Array(b.buffer);
-  };
-  // Returns positions relative to the middle of the box, for which single precision suffices.
-  function places(name) {
-    const steps = new Uint16Array(bytes(name).buffer);
-    const x = new Float32Array(steps.length);
-    for (let i = 0; i < x.length; ++i) x[i] = (steps[i] / 65535 - 0.5) * info.box_size[i % 3];
-    return x;
-  }
-
-  // Viridis: perceptually uniform, also in grey and for colour-blind readers.
-  const kStops = ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"];
-  const kPatches = ["0072b2", "e69f00", "009e73", "cc79a7", "56b4e9", "d55e00", "f0e442", "999999"];
-  const kAlarm = [235, 110, 20];  // visible on light and dark backgrounds, and next to grey
-  const rgb = (hex) => [0, 2, 4].map((k) => parseInt(hex.substr(k, 2), 16));
-  const ramp = [];
-  for (let v = 0; v < 256; ++v) {
-    const at = (v / 255) * (kStops.length - 1), k = Math.min(Math.floor(at), kStops.length - 2);
-    const a = rgb(kStops[k]), b = rgb(kStops[k + 1]);
-    ramp.push(a.map((c, i) => Math.round(c + (at - k) * (b[i] - c))));
-  }
-  const reversed = ramp.slice().reverse();
-  // Grey near samples, and yellow to dark red where no sample supports the surface.
-  const kGuess = [[254, 196, 79], [236, 112, 20], [140, 20, 4]], kBacked = [[206, 214, 222], [120, 138, 156]];
-  const blend = (a, b, s) => a.map((c, i) => Math.round(c + s * (b[i] - c)));
-  const support = [];
-  const guessFrom = ranges.support ? Math.min(1, info.support_radius / Math.max(ranges.support[1], 1e-300)) : 1;
-  for (let v = 0; v < 256; ++v) {
-    const at = v / 255, s = 2 * (at - guessFrom) / Math.max(1 - guessFrom, 1e-9);
-    support.push(at <= guessFrom ? blend(kBacked[0], kBacked[1], at / guessFrom)
-                 : s < 1 ? blend(kGuess[0], kGuess[1], s) : blend(kGuess[1], kGuess[2], s - 1));
-  }
-  const patchColours = [];
-  for (let v = 0; v < 256; ++v) patchColours.push(rgb(kPatches[v % kPatches.length]));
-  const plain = new Array(256).fill([226, 196, 128]);
-
-  // Data of the samples: viridis up to 254, and grey where they are unknown.
-  const kNoValue = 255, kUnknown = [150, 155, 165];
-  const known = ramp.map((c, v) => v === kNoValue ? kUnknown : ramp[Math.round(v * 255 / 254)]);
-  const fields = info.fields.map((f, k) => ({
-    id: "field_" + k, name: f.name, legend: f.name, field: f, vertex: "vertex_field_" + k, ramp: f.of_colours ? null : known,
-  }));
-
-  // Bright is good: small distances are at the bright end.
-  const kinds = [
-    {id: "quality", name: "quality (mean ratio)", key: "quality", face: "face_quality", ramp: ramp},
-    {id: "deviation", name: "deviation of face centres", legend: "deviation of face centres", key: "deviation", face: "face_deviation", ramp: reversed},
-    {id: "support", name: "support (nearest sample)", legend: "distance to the nearest sample", key: "support", vertex: "vertex_support", ramp: support},
-    {id: "size", name: "edge length", legend: "mean edge length", key: "edge_length", vertex: "vertex_edge_length", ramp: ramp},
-    {id: "patch", name: "patch", face: "face_patch", ramp: patchColours},
-    ...fields,
-    {id: "none", name: "none", ramp: plain},
-  ].filter((k) => !(k.face || k.vertex) || has(k.face || k.vertex));
-  for (const kind of kinds) {
-    kind.texture = once(() => {
-      const texels = new Uint8Array(kind.ramp.flatMap((c) => [...c, 255]));
-      const texture = new THREE.DataTexture(texels, 256, 1, THREE.RGBAFormat);
-      texture.needsUpdate = true;
-      return texture;
-    });
-    kind.bytes = kind.face || kind.vertex ? once(() => bytes(kind.face || kind.vertex)) : () => null;
-    $("colour").add(new Option(kind.name, kind.id));
-  }
-
-  const X = places("positions"), F = indices("faces"), nFaces = F.length / 4;
-  const tets = once(() => indices("tets")), tetQuality = once(() => bytes("tet_quality"));
-  const centroid = (list, k, axis) =>
-    (X[3 * list[4 * k] + axis] + X[3 * list[4 * k + 1] + axis] + X[3 * list[4 * k + 2] + axis] +
-     X[3 * list[4 * k + 3] + axis]) / 4;
-  const kTetFaces = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
-
-  // Triangles that share no corners: each has its own colours, and weights that measure the distance to an edge.
-  function Soup(capacity) {
-    const position = new Float32Array(9 * capacity), colour = new Uint8Array(9 * capacity);
-    let n = 0;
-    const put = (at, corner, tint) => {
-      for (let i = 0; i < 3; ++i) {
-        position[at + i] = X[3 * corner + i];
-        colour[at + i] = tint[i];
-      }
+  // ---- the strip of stages
+  let at = Math.max(0, stages.findIndex((s) => s.id === strip.shown));
+  const isCause = (stage) => strip.blame !== null && strip.blame.stage === stage.id;
+  stages.forEach((stage, k) => {
+    const button = element("button", "", $("strip"));
+    button.type = "button";
+    button.id = "stage-" + stage.id;
+    const isBlamed = isCause(stage);
+    if (isBlamed) button.classList.add("blamed");
+    stage.thumb = element("canvas", "", button);
+    stage.thumb.width = 200;
+    stage.thumb.height = 136;
+    element("b", stage.name, button);
+    element("span", isBlamed ? "cause of the failure" : stage.facts.some(([what]) => what === "no result") ? "no result" : stage.seconds !== null ? number(stage.seconds) + " s" : "", button);
+    button.addEventListener("click", () => showStage(k));
+    stage.button = button;
+    $("beside").add(new Option(stage.name, stage.id));
+  });
+  function stageInfo(stage) {
+    const box = $("stage-info");
+    box.textContent = "";
+    if (isCause(stage)) element("p", `Cause: ${strip.blame.number}.` + (strip.blame.remedy ? ` Try ${strip.blame.remedy}.` : ""), box, "blame");
+    const list = element("dl", "", box);
+    const pair = (what) => {
+      const both = element("div", "", list);
+      element("dt", what, both);
+      return element("dd", "", both);
     };
-    this.add = (a, b, c, tintA, tintB, tintC) => {
-      put(9 * n, a, tintA);
-      put(9 * n + 3, b, tintB);
-      put(9 * n + 6, c, tintC);
-      ++n;
-    };
-    this.geometry = () => {
-      const weights = new Uint8Array(9 * n);
-      for (let v = 0; v < 3 * n; ++v) weights[3 * v + (v % 3)] = 1;
-      const g = new THREE.BufferGeometry();
-      g.setAttribute("position", new THREE.BufferAttribute(position.subarray(0, 9 * n), 3));
-      g.setAttribute("tint", new THREE.BufferAttribute(colour.subarray(0, 9 * n), 3, true));
-      g.setAttribute("weight", new THREE.BufferAttribute(weights, 3));
-      return g;
-    };
+    for (const [what, value] of stage.facts) pair(what).textContent = value;
+    if (stage.seconds !== null) pair("time").textContent = number(stage.seconds) + " s";
+    if (stage.file) element("code", stage.file, pair("file"));
+    if (stage.command) {
+      const place = pair("repeat it with another parameter");
+      element("code", stage.command, place).id = "command";
+      const copy = element("button", "copy", place);
+      copy.type = "button";
+      copy.addEventListener("click", () => {
+        getSelection().selectAllChildren($("command"));
+        copy.textContent = document.execCommand("copy") ? "copied" : "press Ctrl+C";
+      });
+    }
   }
 
-  function material(options) {
-    return new THREE.ShaderMaterial(Object.assign({
-      uniforms: {edges: {value: 1}, opacity: {value: 1}, ramped: {value: 0}, ramp: {value: null}},
-      side: THREE.DoubleSide,
-      extensions: {derivatives: true},
-      vertexShader: `
-        attribute vec3 tint; attribute vec3 weight;
-        varying vec3 at, colour, corner;
-        void main() {
-          vec4 p = modelViewMatrix * vec4(position, 1.0);
-          at = p.xyz; colour = tint; corner = weight;
-          gl_Position = projectionMatrix * p;
-        }`,
-      fragmentShader: `
-        uniform float edges, opacity, ramped;
-        uniform sampler2D ramp;
-        varying vec3 at, colour, corner;
-        void main() {
-          vec3 tint = ramped > 0.5 ? texture2D(ramp, vec2((colour.r * 255.0 + 0.5) / 256.0, 0.5)).rgb : colour;
-          vec3 n = normalize(cross(dFdx(at), dFdy(at)));
-          float light = 0.42 + 0.63 * abs(dot(n, normalize(vec3(0.25, 0.45, 1.0))));
-          vec3 d = corner / max(fwidth(corner), 1e-9);
-          float line = 1.0 - smoothstep(0.3, 1.3, min(min(d.x, d.y), d.z));
-          // Where triangles are only a few pixels wide, their edges would hide everything else.
-          float size = 1.0 / max(max(fwidth(corner.x), fwidth(corner.y)), fwidth(corner.z));
-          line *= edges * 0.55 * smoothstep(2.0, 9.0, size);
-          gl_FragColor = vec4(mix(tint * light, vec3(0.05), line), opacity);
-        }`,
-    }, options));
-  }
-
-  mark("decoded");
+  // ---- no picture
   let renderer = null;
+  mark("decoded");
   try {
     renderer = new THREE.WebGLRenderer({canvas: $("canvas"), antialias: true, alpha: true, preserveDrawingBuffer: true});
   } catch (e) {
     state.webgl = "missing";
     $("no-webgl").hidden = false;
     $("legend").hidden = true;
+    if (stages.length > 0) stageInfo(stages[at]);
     state.ready = Math.round(performance.now());
     return;
   }
   mark("webgl");
+  if (stages.length === 0) {
+    state.webgl = "empty";
+    state.ready = Math.round(performance.now());
+    return;
+  }
   renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
   renderer.setClearColor(0, 0);
-  const world = new THREE.Scene();
+  renderer.autoClear = false;
   const camera = new THREE.PerspectiveCamera(28, 1, 0.01, 100);
-  // The surface lies on the faces of tets behind it, so it is drawn slightly in front.
-  const surface = new THREE.Mesh(new THREE.BufferGeometry(),
-                                 material({polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1}));
-  const inside = new THREE.Mesh(new THREE.BufferGeometry(), material({}));
-  const radius = Math.max(Math.hypot(...info.box_size) / 2, 1e-300);
-  // Half of the samples are behind the flat faces made from them, so they are drawn slightly closer.
-  const cloud = new THREE.Points(new THREE.BufferGeometry(), new THREE.ShaderMaterial({
-    vertexShader: `
-      void main() {
-        vec4 p = modelViewMatrix * vec4(position, 1.0);
-        p.xyz *= 0.994;
-        gl_Position = projectionMatrix * p;
-        gl_PointSize = 3.0;
-      }`,
-    fragmentShader: "void main() { gl_FragColor = vec4(0.85, 0.11, 0.38, 1.0); }",
-  }));
-  const samples = once(() => cloud.geometry.setAttribute("position", new THREE.BufferAttribute(places("points"), 3)));
-  if (info.n_points_shown === 0) $("cloud-row").hidden = true;
-  // Sharp edges of the body, as pairs of ends, slightly in front of the surface.
-  const ends = has("curves") ? places("curves") : new Float32Array(0);
-  const curves = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.ShaderMaterial({
-    vertexShader: `
-      void main() {
-        vec4 p = modelViewMatrix * vec4(position, 1.0);
-        p.xyz *= 0.998;
-        gl_Position = projectionMatrix * p;
-      }`,
-    fragmentShader: "void main() { gl_FragColor = vec4(0.75, 0.05, 0.1, 1.0); }",
-  }));
-  for (const part of [surface, inside, cloud, curves]) {
-    part.frustumCulled = false;
-    world.add(part);
+  const main = new View(), second = new View();
+  let chosen = null;  // the mark that was clicked
+
+  // ---- the state of the controls
+  const isOn = (id) => $(id).checked;
+  function settings(stage) {
+    const axis = $("axis").value, scene = stage.scene(), box = scene.info || umtetScenes.whole;
+    const sign = isOn("flip") ? -1 : 1, a = Number(axis);
+    const place = Number($("place").value);
+    const cut = axis === "" ? null : {
+      axis: a, sign: sign, isMiddle: Math.abs(place - 0.5) < 0.004,
+      at: sign * (box.box_min[a] - origin[a] + place * box.box_size[a]),
+    };
+    return {colour: stage.colourId, cut, worst: isOn("worst"), nWorst: Number($("worst-number").value), edges: isOn("edges") && stage.id !== "level-set",
+            marks: isOn("marks"), mark: chosen};
   }
-  surface.renderOrder = 1;
-  cloud.renderOrder = curves.renderOrder = 2;
-
-  const setGeometry = (part, soup) => {
-    part.geometry.dispose();
-    part.geometry = soup.geometry();
-  };
-
-  function plane() {
-    const axis = $("axis").value;
-    if (axis === "") return null;
-    const a = Number(axis), sign = $("flip").checked ? -1 : 1;
-    return {axis: a, sign: sign, at: sign * (Number($("place").value) - 0.5) * info.box_size[a]};
+  for (const stage of stages) stage.colourId = stage.colour;
+  function fillColours(stage) {
+    const kinds = stage.scene().kinds;
+    $("colour").textContent = "";
+    for (const kind of kinds) $("colour").add(new Option(kind.name, kind.id));
+    if (!kinds.some((k) => k.id === stage.colourId)) stage.colourId = kinds[0].id;
+    $("colour").value = stage.colourId;
+  }
+  function fillLayers(stage) {
+    $("layers").textContent = "";
+    const add = (id, name, colour) => {
+      const label = element("label", "", $("layers")), box = element("input", "", label);
+      box.type = "checkbox";
+      box.id = id === "samples" ? "cloud" : "layer-" + id;
+      box.checked = stage.shows.has(id);
+      if (colour) element("i", "", label).style.background = `rgb(${colour.join()})`;
+      label.append(" " + name);
+      box.addEventListener("input", () => {
+        box.checked ? stage.shows.add(id) : stage.shows.delete(id);
+        build();
+        draw();
+      });
+    };
+    for (const layer of layers) {
+      add(layer.id, layer.id === "samples" ? "samples of the cloud" : `${layer.name}: ${layer.n}`, layer.id === "samples" ? null : layer.colour);
+      if (layer.id === "samples" && layer.normals) add("normals", "normals");
+    }
+    $("layers-box").hidden = layers.length === 0;
+  }
+  function fillControls(stage) {
+    fillColours(stage);
+    fillLayers(stage);
+    const info = stage.scene().info, hasTets = info !== null && info.n_tets_shown > 0;
+    $("worst").disabled = $("worst-number").disabled = !hasTets;
+    if (hasTets) $("worst-number").max = info.n_worst;
+    $("colour").disabled = stage.scene().kinds.length < 2;
+    $("marks-row").hidden = marks.length === 0;
+    const note = info && info.cells
+      ? "Away from the middle planes, the cut shows the least Q in cells of about twelve tets." : "";
+    $("cut-note").textContent = note;
+  }
+  function showStage(k) {
+    at = (k + stages.length) % stages.length;
+    const stage = stages[at];
+    for (const other of stages) other.button.setAttribute("aria-pressed", other === stage);
+    state.stage = stage.id;
+    stageInfo(stage);
+    fillControls(stage);
+    build();
+    draw();
   }
 
   function build() {
-    const kind = kinds.find((k) => k.id === $("colour").value), cut = plane(), worst = $("worst").checked;
-    const behind = (list, k) => !cut || cut.sign * centroid(list, k, cut.axis) <= cut.at;
-    const shell = new Soup(nFaces), values = kind.bytes(), grey = [150, 155, 165];
-    const tint = (v) => worst || !kind.ramp ? grey : kind.ramp[v];
-    // Values at vertices, not colours, are linear on a face, so that boundaries between colours are at the correct values.
-    const ramped = Boolean(kind.vertex && kind.ramp) && !worst;
-    // A face with a corner without a value has no value.
-    const unknown = (corners) => kind.field && corners.some((v) => values[v * (kind.ramp ? 1 : 3)] === kNoValue);
-    const coloured = (v) => [0, 1, 2].map((k) => Math.round(values[3 * v + k] * 255 / 254));
-    surface.material.uniforms.ramped.value = ramped ? 1 : 0;
-    if (ramped) surface.material.uniforms.ramp.value = kind.texture();
-    for (let f = 0; f < nFaces; ++f) {
-      if (!behind(F, f)) continue;
-      const a = F[4 * f], b = F[4 * f + 1], c = F[4 * f + 2];
-      if (ramped) {
-        const none = unknown([a, b, c]);
-        shell.add(a, b, c, ...[a, b, c].map((v) => [none ? kNoValue : values[v], 0, 0]));
-      } else if (kind.field && !worst) {
-        const none = unknown([a, b, c]);
-        shell.add(a, b, c, ...[a, b, c].map((v) => none ? kUnknown : coloured(v)));
-      } else {
-        const one = tint(values ? values[f] : 0);
-        shell.add(a, b, c, one, one, one);
+    const stage = stages[at];
+    main.build(stage, settings(stage));
+    const beside = stages.find((s) => s.id === $("beside").value);
+    if (beside) {
+      const kinds = beside.scene().kinds;
+      const same = kinds.some((k) => k.id === stage.colourId) ? stage.colourId : beside.colourId;
+      second.build(beside, Object.assign(settings(beside), {colour: same}));
+    }
+    state.curves = main.nCurves;
+    state.samples = main.nSamples;
+    state.marked = main.nMarkedSamples;
+    state.faces = main.scene.nFaces;
+    state.cut = main.cutBy;
+    state.markedFaces = main.nMarked;
+    $("worst-count").value = main.nWorst || "";
+    $("names").textContent = "";
+    if (beside) for (const s of [stage, beside]) element("span", s.name, $("names"));
+    legend();
+    $("picked").hidden = true;
+  }
+
+  // ---- the legend, and the same for a saved picture
+  let legends = [];
+  function legend() {
+    const {kind, scene, nWorst, cutBy} = main;
+    legends = [];
+    const bar = (name, colours, ends) => legends.push({name, colours: Array.from({length: 52}, (_, k) => colours[Math.min(5 * k, kNoValue - 1)]), ends});
+    const ofQuality = (name) => bar(name, ramp, scene.info.ranges.quality.map(number));
+    if (nWorst) {
+      const [least, most] = scene.info.ranges.quality, q = least + (scene.tetQuality()[nWorst - 1] / 255) * (most - least);
+      legends.push({name: `the ${nWorst} worst tets: mean ratio ${number(least)} to ${q.toFixed(3)}`});
+    } else if (kind.id === "patch") {
+      legends.push({name: "", rows: patchRows(scene.info)});
+    } else if (kind.legend && !kind.ramp) {
+      legends.push({name: kind.legend});
+    } else if (kind.legend) {
+      const ends = kind.range.map(number);
+      if (kind.isAtLeast) ends[1] = "≥ " + ends[1];
+      bar(kind.legend, kind.ramp, ends);
+      if (kind.id === "support") legends.push({name: supportText(scene.info, kind)});
+    }
+    if (cutBy === "tets" && kind.id !== "quality") ofQuality("tets at the cut: mean ratio Q");
+    if (cutBy === "cells") ofQuality("cells at the cut: least mean ratio Q");
+    if (main.nMarkedSamples > 0) {
+      legends.push({name: "", rows: layers.filter((l) => l.id !== "samples" && stages[at].shows.has(l.id)).map((l) => ({colour: l.colour, name: l.name, value: String(l.n)}))});
+    }
+    $("legend").textContent = "";
+    $("legend").hidden = legends.length === 0;
+    for (const part of legends) {
+      if (part.name) element("div", part.name, $("legend"), "name");
+      if (part.colours) element("div", "", $("legend"), "bar").style.background = "linear-gradient(90deg," + part.colours.map((c) => `rgb(${c.join()})`).join() + ")";
+      const ends = part.ends && element("div", "", $("legend"), "ends");
+      for (const end of part.ends || []) element("span", end, ends);
+      for (const row of part.rows || []) {
+        const line = element("div", "", $("legend"), row.number === undefined ? "row" : "patch");
+        if (row.number !== undefined) line.dataset.number = row.number;
+        element("i", "", line).style.background = `rgb(${row.colour.join()})`;
+        element("span", row.name, line);
+        element("span", row.value, line);
       }
     }
-    setGeometry(surface, shell);
-    const nWorst = Math.min(Number($("worst-number").value), info.n_worst);
-    setGeometry(inside, worst || cut ? tetsInside(cut, worst ? nWorst : 0, behind) : new Soup(0));
-    const glass = worst ? 0.13 : 1;
-    surface.material.transparent = worst;
-    surface.material.depthWrite = !worst;
-    surface.material.uniforms.opacity.value = glass;
-    surface.material.uniforms.edges.value = $("edges").checked && !worst ? 1 : 0;
-    inside.material.uniforms.edges.value = $("edges").checked ? 1 : 0;
-    const shown = [];
-    for (let i = 0; i < ends.length; i += 6) {
-      const middle = cut && (ends[i + cut.axis] + ends[i + 3 + cut.axis]) / 2;
-      if (!cut || cut.sign * middle <= cut.at) shown.push(...ends.subarray(i, i + 6));
-    }
-    curves.geometry.dispose();
-    curves.geometry = new THREE.BufferGeometry();
-    curves.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(shown), 3));
-    curves.visible = shown.length > 0;
-    state.curves = shown.length / 6;
-    cloud.visible = $("cloud").checked && info.n_points_shown > 0;
-    if (cloud.visible) samples();
-    $("worst-count").value = nWorst;
-    legend(cut && kind.id === "none" ? kinds[0] : kind);
-    if (worst) {
-      const [least, most] = ranges.quality, q = least + (tetQuality()[nWorst - 1] / 255) * (most - least);
-      $("legend").textContent = `the ${nWorst} worst tets: mean ratio ${number(least)} to ${q.toFixed(3)}`;
-    }
   }
-
-  // The worst tets alone, or the tets at the cut.
-  function tetsInside(cut, nWorst, behind) {
-    const T = tets(), Q = tetQuality(), taken = [];
-    const drawn = (t) => {
-      const c = cut.sign * centroid(T, t, cut.axis);
-      return c <= cut.at && c > cut.at - info.layer;
-    };
-    for (let t = 0; t < (nWorst || T.length / 4); ++t) if (nWorst ? behind(T, t) : drawn(t)) taken.push(t);
-    const solid = new Soup(4 * taken.length);
-    for (const t of taken) {
-      const c = nWorst ? kAlarm : ramp[Q[t]];
-      for (const face of kTetFaces) solid.add(T[4 * t + face[0]], T[4 * t + face[1]], T[4 * t + face[2]], c, c, c);
-    }
-    return solid;
-  }
-
-  const number = (v) => String(Number(v.toPrecision(4)));
-  function legend(kind) {
-    $("legend").textContent = "";
-    const add = (cls, parent) => {
-      const e = document.createElement("div");
-      e.className = cls;
-      return parent.appendChild(e);
-    };
-    if (kind.face === "face_patch") return patchLegend(add);
-    if (!kind.key && !kind.field) return;
-    add("name", $("legend")).textContent =
-      kind.key === "quality" ? "mean ratio Q" : kind.legend + (kind.field ? "; grey: no value" : ", model units");
-    if (!kind.ramp) return;
-    add("bar", $("legend")).style.background =
-      "linear-gradient(90deg," + Array.from({length: 52}, (_, k) => 5 * k).map((v) => `rgb(${kind.ramp[Math.min(v, kNoValue - 1)].join()})`).join() + ")";
-    const ends = add("ends", $("legend"));
-    for (const v of kind.field ? kind.field.range : ranges[kind.key]) ends.appendChild(document.createElement("span")).textContent = number(v);
-    if (kind.id === "support") supportLegend(add);
-  }
-
   // States where on the bar the guess begins.
-  function supportLegend(add) {
-    const far = number(info.support_radius), note = add("name", $("legend"));
-    if (guessFrom === 1) {
-      note.textContent = `no point is farther than ${far} (3 spacings) from the nearest sample`;
-      return;
-    }
-    note.textContent = `yellow to red: a guess, farther than ${far} (3 spacings) from the nearest sample`;
+  function supportText(info, kind) {
+    const far = number(info.support_radius);
+    return kind.guessFrom === 1 ? `no point is farther than ${far} (3 spacings) from the nearest sample`
+                                : `yellow to red: a guess, farther than ${far} (3 spacings) from the nearest sample`;
   }
-
-  // Lists the largest patches by name, with their shares of the area.
-  function patchLegend(add) {
-    const whole = info.patches.reduce((sum, p) => sum + p.area, 0), kMost = 16;
+  // The largest patches by name, with their shares of the area.
+  function patchRows(info) {
+    const all = info.patches.reduce((sum, p) => sum + p.area, 0), kMost = 16;
     const order = info.patches.map((p, k) => k).sort((a, b) => info.patches[b].area - info.patches[a].area || a - b);
-    for (const k of order.slice(0, kMost)) {
-      const row = add("patch", $("legend")), p = info.patches[k];
-      row.dataset.number = p.number;
-      row.appendChild(document.createElement("i")).style.background = `rgb(${patchColours[k % 256].join()})`;
-      row.appendChild(document.createElement("span")).textContent = p.name;
-      row.appendChild(document.createElement("span")).textContent = (100 * p.area / whole).toFixed(1) + " %";
-    }
-    if (order.length > kMost) add("name", $("legend")).textContent = `and ${order.length - kMost} smaller patches`;
+    const rows = order.slice(0, kMost).map((k) => {
+      const p = info.patches[k];
+      return {number: p.number, colour: patchColours[k % 256], name: p.name, value: (100 * p.area / all).toFixed(1) + " %"};
+    });
+    if (order.length > kMost) rows.push({colour: [128, 128, 128], name: `and ${order.length - kMost} smaller patches`, value: ""});
+    return rows;
   }
 
-  // A turntable around a target: angles, distance relative to the home position, target.
+  // ---- a turntable around a target: angles, distance relative to the home position, target
   const kHome = {turn: 0.6, lift: 0.35, away: 1};
   let eye = Object.assign({x: 0, y: 0, z: 0}, kHome);
   function axes() {
@@ -350,13 +248,18 @@
       .addScaledVector(a.up, Math.sin(lift));
   }
   const kSlope = Math.tan(camera.fov * Math.PI / 360);
+  // All stages have the same camera: its distance depends on the last stage, or on the samples if nothing else is drawn.
+  const bodyPoints = umtetScenes.once(() => {
+    for (let k = stages.length - 1; k >= 0; --k) if (stages[k].scene().X.length > 0) return stages[k].scene().X;
+    return layers.length > 0 ? layers[0].X() : new Float32Array(3);
+  });
   /** The minimum distance from which the whole body is visible, with a margin of a twentieth. */
   function homeDistance(a) {
     const of = `${$("up").value} ${camera.aspect}`;
     if (homeDistance.of === of) return homeDistance.is;
     const w = back(a, kHome), u = new THREE.Vector3().crossVectors(a.up, w).normalize();
     const v = new THREE.Vector3().crossVectors(w, u), high = 0.95 * kSlope, wide = high * camera.aspect;
-    const p = new THREE.Vector3();
+    const p = new THREE.Vector3(), X = bodyPoints();
     let far = 0.01 * radius;
     for (let i = 0; i < X.length; i += 3) {
       p.fromArray(X, i);
@@ -370,11 +273,8 @@
     draw.asked = true;
     requestAnimationFrame(render);
   }
-  function render() {
-    draw.asked = false;
-    const box = $("canvas").parentElement.getBoundingClientRect();
-    renderer.setSize(box.width, box.height, false);
-    camera.aspect = box.width / Math.max(box.height, 1);
+  function aim(wide, high) {
+    camera.aspect = wide / Math.max(high, 1);
     const a = axes(), far = eye.away * homeDistance(a);
     const target = new THREE.Vector3(eye.x, eye.y, eye.z);
     camera.position.copy(target).addScaledVector(back(a, eye), far);
@@ -383,7 +283,59 @@
     camera.near = Math.max(far - 4 * radius, far * 0.02);
     camera.far = far + 4 * radius;
     camera.updateProjectionMatrix();
-    renderer.render(world, camera);
+    camera.updateMatrixWorld();
+    for (const view of [main, second]) view.setPixel(2 * kSlope / Math.max(high, 1));
+  }
+  function render() {
+    draw.asked = false;
+    const box = $("canvas").parentElement.getBoundingClientRect();
+    renderer.setSize(box.width, box.height, false);
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, box.width, box.height);
+    renderer.clear();
+    if (!$("beside").value) {
+      aim(box.width, box.height);
+      renderer.render(main.world, camera);
+      return;
+    }
+    const half = Math.floor(box.width / 2);
+    renderer.setScissorTest(true);
+    aim(half, box.height);
+    [main, second].forEach((view, k) => {
+      renderer.setViewport(k * half, 0, half, box.height);
+      renderer.setScissor(k * half, 0, half, box.height);
+      renderer.render(view.world, camera);
+    });
+  }
+
+  // ---- small pictures of all stages, when the browser is idle
+  function drawThumbs() {
+    const wide = 200, high = 136, target = new THREE.WebGLRenderTarget(wide, high), view = new View();
+    const queue = stages.slice(), later = window.requestIdleCallback || ((f) => setTimeout(f, 50));
+    const next = () => {
+      const stage = queue.shift();
+      if (!stage) {
+        state.thumbs = stages.length;
+        return target.dispose();
+      }
+      view.build(stage, Object.assign(settings(stage), {colour: stage.colourId, cut: null, worst: false, edges: false, marks: false, mark: null}));
+      const before = eye;
+      eye = Object.assign({x: 0, y: 0, z: 0}, kHome);
+      aim(wide, high);
+      eye = before;
+      renderer.setScissorTest(false);
+      renderer.setRenderTarget(target);
+      renderer.clear();
+      renderer.render(view.world, camera);
+      const pixels = new Uint8Array(4 * wide * high);
+      renderer.readRenderTargetPixels(target, 0, 0, wide, high, pixels);
+      renderer.setRenderTarget(null);
+      const context = stage.thumb.getContext("2d"), image = context.createImageData(wide, high);
+      for (let y = 0; y < high; ++y) image.data.set(pixels.subarray(4 * wide * (high - 1 - y), 4 * wide * (high - y)), 4 * wide * y);
+      context.putImageData(image, 0, 0);
+      later(next);
+    };
+    later(next);
   }
 
   // Counts the pixels that are not background, once, so that a test can check whether there is a picture.
@@ -398,18 +350,131 @@
     state.ready = Math.round(performance.now());
   }
 
+  // ---- a click: the nearest face, tet or sample on the ray
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  /** The distance along the ray to a triangle; infinite if it misses. */
+  function hit(from, along, a, b, c) {
+    const u = minus(b, a), v = minus(c, a), p = cross(along, v), det = dot(u, p);
+    if (Math.abs(det) < 1e-300) return Infinity;
+    const t = minus(from, a), x = dot(t, p) / det;
+    if (x < 0 || x > 1) return Infinity;
+    const q = cross(t, u), y = dot(along, q) / det;
+    const away = dot(v, q) / det;
+    return y < 0 || x + y > 1 || away <= 0 ? Infinity : away;
+  }
+  function rayAt(x, y) {
+    const box = $("canvas").getBoundingClientRect(), isSplit = Boolean($("beside").value);
+    const wide = isSplit ? box.width / 2 : box.width, isSecond = isSplit && x - box.left > wide;
+    aim(wide, box.height);
+    const ndc = new THREE.Vector3(2 * ((x - box.left) - (isSecond ? wide : 0)) / wide - 1, 1 - 2 * (y - box.top) / box.height, 0.5);
+    const along = ndc.unproject(camera).sub(camera.position).normalize();
+    return {view: isSecond ? second : main, from: camera.position.toArray(), along: along.toArray(), pixel: 2 * kSlope / box.height};
+  }
+  const placeText = (p) => "(" + p.map((c, i) => number(c + origin[i])).join(", ") + ")";
+  function picked(view, from, along, pixel) {
+    const {scene, stage, kind} = view, {X, F} = scene, corner = (v) => [X[3 * v], X[3 * v + 1], X[3 * v + 2]];
+    let best = {away: Infinity};
+    for (let f = 0; f < scene.nFaces; ++f) {
+      if (!view.isBehind(F, f)) continue;
+      const away = view.nWorst ? Infinity : hit(from, along, corner(F[4 * f]), corner(F[4 * f + 1]), corner(F[4 * f + 2]));
+      if (away < best.away) best = {away, face: f, corners: [0, 1, 2].map((k) => corner(F[4 * f + k]))};
+    }
+    const T = scene.tets();
+    for (const t of view.taken) {
+      for (const face of kTetFaces) {
+        const away = hit(from, along, ...face.map((k) => corner(T[4 * t + k])));
+        if (away < best.away) best = {away, tet: t, corners: [0, 1, 2, 3].map((k) => corner(T[4 * t + k]))};
+      }
+    }
+    // A sample within five pixels of the ray is in front of a face that is a hundredth of the body nearer.
+    for (const layer of layers) {
+      if (!stage.shows.has(layer.id)) continue;
+      const P = layer.X();
+      for (let i = 0; i < P.length / 3; ++i) {
+        const p = [P[3 * i], P[3 * i + 1], P[3 * i + 2]], d = minus(p, from), away = dot(d, along);
+        if (away <= 0 || away - 0.02 * radius > best.away) continue;
+        const off2 = dot(d, d) - away * away;
+        if (off2 < (5 * pixel * away) ** 2 && away - 0.02 * radius < best.away) best = {away: away - 0.02 * radius, layer, sample: i, at: p, corners: null};
+      }
+    }
+    if (best.away === Infinity) return null;
+    const value = (range, byte, steps) => number(range[0] + (byte / steps) * (range[1] - range[0]));
+    const lines = [], info = scene.info;
+    if (best.sample !== undefined) {
+      lines.push(`${best.layer.name} at ${placeText(best.at)}`);
+      best.layer.values.forEach((v, k) => {
+        const kindOf = scene.kinds.find((x) => x.sample && x.id === "sample_" + k);
+        if (kindOf) lines.push(`${v.name} ${value(v.range, kindOf.bytes()[best.sample], 254)}`);
+      });
+      if (best.layer.normals) lines.push("normal (" + Array.from(best.layer.N().subarray(3 * best.sample, 3 * best.sample + 3), number).join(", ") + ")");
+      return {lines, corners: null};
+    }
+    const middle = [0, 1, 2].map((k) => best.corners.reduce((s, c) => s + c[k], 0) / best.corners.length);
+    const edges = best.corners.flatMap((c, i) => best.corners.slice(0, i).map((d) => Math.hypot(...minus(c, d))));
+    if (best.tet !== undefined) {
+      lines.push(`tet ${scene.tetIds()[best.tet]}`, `mean ratio Q ${value(info.ranges.quality, scene.tetQuality()[best.tet], 255)}`);
+    } else {
+      const ids = scene.faceTets();
+      lines.push(ids ? `boundary face of tet ${ids[best.face]}` : `triangle ${best.face}`);
+      for (const k of scene.kinds) {
+        if (k.id === "patch") lines.push(`patch ${info.patches[k.bytes()[best.face]].name}`);
+        else if (k.face && k.id === "quality") lines.push(`mean ratio Q ${value(k.range, k.bytes()[best.face], 255)}`);
+        else if (k.face) lines.push(`${k.name} ${value(k.range, k.bytes()[best.face], 255)}`);
+        else if (k.vertex && k.ramp) {
+          const b = [0, 1, 2].map((i) => k.bytes()[F[4 * best.face + i]]);
+          const steps = k.field ? 254 : 255;
+          lines.push(`${k.name} ${k.field && b.includes(kNoValue) ? "–" : value(k.range, Math.max(...b), steps)}`);
+        }
+      }
+    }
+    lines.push(`edges ${number(Math.min(...edges))} to ${number(Math.max(...edges))}`, `at ${placeText(middle)}`);
+    return {lines, corners: best.corners};
+  }
+  function pickAt(x, y) {
+    const {view, from, along, pixel} = rayAt(x, y);
+    // A ring is chosen where the click is near its middle.
+    const box = $("canvas").getBoundingClientRect(), isSplit = Boolean($("beside").value), wide = isSplit ? box.width / 2 : box.width;
+    for (const m of isOn("marks") ? marks : []) {
+      const p = new THREE.Vector3(...m.where.map((c, i) => c - origin[i])).project(camera);
+      const px = box.left + (p.x + 1) / 2 * wide + (view === second ? wide : 0), py = box.top + (1 - p.y) / 2 * box.height;
+      if (Math.hypot(px - x, py - y) > 9) continue;
+      chosen = m;
+      build();
+      tell([m.text]);
+      return draw();
+    }
+    const found = picked(view, from, along, pixel);
+    main.pick(null);
+    second.pick(null);
+    if (found) view.pick(found.corners);
+    tell(found ? found.lines : []);
+    draw();
+  }
+  function tell(lines) {
+    $("picked").textContent = "";
+    $("picked").hidden = lines.length === 0;
+    for (const line of lines) element("div", line, $("picked"));
+  }
+
+  // ---- mouse and keyboard
   const canvas = $("canvas");
   let grip = null;
   canvas.addEventListener("pointerdown", (e) => {
-    grip = {x: e.clientX, y: e.clientY, move: e.shiftKey || e.button === 2};
+    grip = {x: e.clientX, y: e.clientY, move: e.shiftKey || e.button === 2, far: 0, isFirst: e.button === 0};
     canvas.setPointerCapture(e.pointerId);
   });
-  canvas.addEventListener("pointerup", () => { grip = null; });
+  canvas.addEventListener("pointerup", (e) => {
+    if (grip && grip.far < 4 && grip.isFirst) pickAt(e.clientX, e.clientY);
+    grip = null;
+  });
   canvas.addEventListener("pointercancel", () => { grip = null; });
   canvas.addEventListener("contextmenu", (e) => e.preventDefault());
   canvas.addEventListener("pointermove", (e) => {
     if (!grip) return;
     const dx = (e.clientX - grip.x) / canvas.clientHeight, dy = (e.clientY - grip.y) / canvas.clientHeight;
+    grip.far += Math.abs(e.clientX - grip.x) + Math.abs(e.clientY - grip.y);
     grip.x = e.clientX;
     grip.y = e.clientY;
     if (grip.move) {
@@ -428,13 +493,21 @@
     eye.away = Math.max(0.02, Math.min(5, eye.away * Math.exp(0.001 * e.deltaY)));
     draw();
   }, {passive: false});
-  // Shows a region of the surface: the camera looks at it from outside, so close that it fills a third of the view. Its
-  // faces are the faces without an omitted corner.
+  window.addEventListener("keydown", (e) => {
+    if (e.ctrlKey || e.altKey || e.metaKey || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
+    const step = {ArrowLeft: -1, ArrowRight: 1}[e.key];
+    if (!step) return;
+    e.preventDefault();
+    showStage(at + step);
+  });
+
+  // ---- places: the camera looks at a region from outside, so close that it fills a third of the view
   function lookAt(where, wide, isLeftOut) {
     $("axis").value = "";
     $("worst").checked = false;
     build();
-    const middle = new THREE.Vector3(...where.map((c, i) => c - info.box_min[i] - info.box_size[i] / 2));
+    const {X, F, nFaces} = main.scene;
+    const middle = new THREE.Vector3(...where.map((c, i) => c - origin[i]));
     const normal = new THREE.Vector3();
     const [p, q, r] = [0, 1, 2].map(() => new THREE.Vector3());
     for (let f = 0; f < nFaces; ++f) {
@@ -453,20 +526,23 @@
     eye.away = Math.max(0.02, Math.min(1, 3 * wide / (2 * kSlope) / homeDistance(a)));
     draw();
   }
-  const certificate = JSON.parse($("certificate").textContent);
-  const holes = certificate.domain.closed_holes || [], spots = certificate.places.listed;
-  function showHole(hole) {
-    const values = bytes("vertex_support");
-    $("colour").value = "support";
-    lookAt(hole.centre, Math.max(hole.rim.diameter, Math.sqrt(hole.area)), (v) => values[v] / 255 <= guessFrom);
+  function showMark(m) {
+    if (!m) return;
+    chosen = m;
+    const k = stages.findIndex((s) => s.id === "mesh"), stage = stages[k];
+    if (m.kind === "hole") stage.colourId = "support";
+    if (m.kind === "missed") stage.shows.add("samples");
+    showStage(k);
+    const support = m.kind === "hole" && stage.scene().kinds.find((kind) => kind.id === "support");
+    const values = support && support.bytes();
+    lookAt(m.where, m.wide, values ? (v) => values[v] / 255 <= support.guessFrom : () => false);
+    tell([m.text]);
   }
-  function showPlace(place) {
-    lookAt(place.where, (4 + place.size_over_h) * certificate.h, () => false);
-  }
-  for (const [kind, list, show] of [["hole", holes, showHole], ["place", spots, showPlace]]) {
+  const markOf = (kind, k) => marks.find((m) => m.kind === kind && m.k === k);
+  for (const kind of ["hole", "place", "missed"]) {
     for (const button of document.querySelectorAll(`button[data-${kind}]`)) {
       button.addEventListener("click", () => {
-        show(list[Number(button.dataset[kind])]);
+        showMark(markOf(kind, Number(button.dataset[kind])));
         canvas.scrollIntoView({block: "center"});
       });
     }
@@ -475,35 +551,89 @@
     eye = Object.assign({x: 0, y: 0, z: 0}, kHome);
     draw();
   });
+  // The picture, with its legend, at the resolution of the screen.
+  function pictureWithLegend() {
+    render();
+    const scale = renderer.getPixelRatio(), out = document.createElement("canvas"), g = out.getContext("2d");
+    out.width = canvas.width;
+    out.height = canvas.height;
+    const style = getComputedStyle(document.body);
+    g.fillStyle = getComputedStyle(canvas.parentElement).backgroundColor;
+    g.fillRect(0, 0, out.width, out.height);
+    g.drawImage(canvas, 0, 0);
+    g.scale(scale, scale);
+    g.font = "12px " + style.fontFamily;
+    g.textBaseline = "top";
+    const high = legends.reduce((sum, l) => sum + (l.name ? 16 : 0) + (l.colours ? 32 : 0) + 16 * (l.rows || []).length, 0);
+    let y = out.height / scale - 14 - high;
+    const text = (s, x, align) => {
+      g.fillStyle = style.color;
+      g.textAlign = align || "left";
+      g.fillText(s, x, y);
+    };
+    for (const l of legends) {
+      if (l.name) text(l.name, 16), y += 16;
+      if (l.colours) {
+        l.colours.forEach((c, k) => {
+          g.fillStyle = `rgb(${c.join()})`;
+          g.fillRect(16 + k * 190 / l.colours.length, y, 190 / l.colours.length + 0.5, 11);
+        });
+        y += 14;
+        text(l.ends[0], 16);
+        text(l.ends[1], 206, "right");
+        y += 18;
+      }
+      for (const row of l.rows || []) {
+        g.fillStyle = `rgb(${row.colour.join()})`;
+        g.fillRect(16, y + 1, 14, 11);
+        text(`${row.name}  ${row.value}`, 38);
+        y += 16;
+      }
+    }
+    return out;
+  }
+  $("save").addEventListener("click", () => {
+    const link = document.createElement("a");
+    link.download = `${document.title}-${stages[at].id}.png`;
+    link.href = pictureWithLegend().toDataURL("image/png");
+    link.click();
+    state.saved = link.href.length;
+  });
   window.addEventListener("resize", draw);
 
-  // The page contains only tets at the middle planes of a large mesh.
-  if (info.planes !== null) {
-    for (const option of Array.from($("axis").options)) {
-      if (option.value !== "" && !info.planes.includes(Number(option.value))) option.remove();
-    }
-    $("place").disabled = true;
-  }
-  $("worst-number").max = info.n_worst;
-  // #colour=patch&axis=0&worst=1: the initial view; #hole=1: the first hole that was closed; #spot=1: the first defect.
+  // #stage=cloud&colour=patch&axis=0&worst=1: the initial view; #hole=1, #spot=1, #missed=1: the first hole that was closed,
+  // defect, place where samples are missed.
   const asked = new URLSearchParams(location.hash.slice(1));
-  const hole = holes[Number(asked.get("hole")) - 1], spot = spots[Number(asked.get("spot")) - 1];
-  if (hole) showHole(hole);
-  if (spot) showPlace(spot);
+  const first = stages.findIndex((s) => s.id === asked.get("stage"));
+  if (first >= 0) at = first;
+  if (asked.has("colour")) stages[at].colourId = asked.get("colour");
+  showStage(at);
+  showMark(markOf("hole", Number(asked.get("hole")) - 1));
+  showMark(markOf("place", Number(asked.get("spot")) - 1));
+  showMark(markOf("missed", Number(asked.get("missed")) - 1));
   for (const [id, value] of asked) {
     const control = $(id);
-    if (!control || !control.form) continue;
+    if (id === "stage" || !control || !control.form) continue;
     if (control.type === "checkbox") control.checked = value === "1";
     else control.value = value;
+    control.dispatchEvent(new Event("input"));
   }
+  $("colour").addEventListener("input", () => { stages[at].colourId = $("colour").value; });
+  if (asked.has("colour") && $("colour").value) stages[at].colourId = $("colour").value;
   for (const control of $("controls").elements) {
-    if (control.type !== "button" && control.tagName !== "FIELDSET") control.addEventListener("input", () => {
+    if (control.type !== "button" && control.tagName !== "FIELDSET" && !control.closest("#layers")) control.addEventListener("input", () => {
       build();
       draw();
     });
   }
   build();
+  if (asked.has("hole") || asked.has("spot") || asked.has("missed")) tell(chosen ? [chosen.text] : []);
   mark("built");
   render();
   ready();
+  if (asked.has("pick")) {
+    const box = canvas.getBoundingClientRect(), [x, y] = asked.get("pick").split(",").map(Number);
+    pickAt(box.left + x * box.width, box.top + y * box.height);
+  }
+  drawThumbs();
 })();

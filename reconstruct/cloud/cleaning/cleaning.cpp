@@ -270,7 +270,9 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
 
   Surroundings left(positions(cloud, kept));
   Covering covers;
-  const auto drop = [&](const std::vector<std::uint8_t>& these) {
+  const auto drop = [&](const std::vector<std::uint8_t>& these, std::vector<Vec3>* where = nullptr) {
+    for (std::size_t row = 0; where && row < kept.size(); ++row)
+      if (these[row] != 0) where->push_back(cloud.points[kept[row]]);
     const std::size_t n_dropped = keep_only(these, kept);
     if (n_dropped > 0) left = Surroundings(positions(cloud, kept));
     if (n_dropped > 0) covers = covering(left.points, left.near);
@@ -282,13 +284,14 @@ CleaningReport clean(OrientedPointCloud& cloud, const CleaningParams& params, Ne
     // A second pass where the first has dropped something: outliers beside each other hide one another from the first.
     for (int pass = 0; pass < 2; ++pass) {
       const std::size_t n_dropped =
-          drop(judged(left, covers, [&](const auto& some) { return outliers(some, params); }));
+          drop(judged(left, covers, [&](const auto& some) { return outliers(some, params); }), &report.outliers);
       if (n_dropped == 0) break;
       report.n_outliers += n_dropped;
     }
-    report.n_small_components = drop(judged(left, covers, [&](const auto& some) {
-      return small_components(some, params, report.n_small_component_pieces);
-    }));
+    report.n_small_components =
+        drop(judged(left, covers,
+                    [&](const auto& some) { return small_components(some, params, report.n_small_component_pieces); }),
+             &report.small_components);
   }
   keep_samples(cloud, kept);
   if (neighbours) *neighbours = std::move(left.near);

@@ -30,6 +30,7 @@ struct CleaningReport {
   std::size_t n_outliers = 0;          ///< points far from a surface, relative to the spacing of its points
   std::size_t n_small_components = 0;  ///< points of small components far from the rest
   std::size_t n_small_component_pieces = 0;
+  std::vector<Vec3> outliers, small_components;  ///< positions of these points
 };
 
 /// Cleaning of a scan: drops points that are not samples of a surface. Normals may be missing (an empty array).

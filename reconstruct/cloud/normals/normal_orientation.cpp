@@ -113,15 +113,18 @@ std::vector<std::int8_t> settle(const OrientedPointCloud& cloud, const Signs& si
   return verdict;
 }
 
-/// Points of components whose outward side is a guess, by the signs that they are left with: of two spheres that touch,
-/// solved as one surface, one is turned and together they enclose nothing, but repair keeps both as they came.
-std::size_t doubtful_points(const OrientedPointCloud& cloud, const Signs& signs, const std::vector<double>& areas) {
+/// Whether a point is of a component whose outward side is a guess, by the signs that they are left with: of two
+/// spheres that touch, solved as one surface, one is turned and together they enclose nothing, but repair keeps both as
+/// they came.
+void find_doubtful(const OrientedPointCloud& cloud, const Signs& signs, const std::vector<double>& areas,
+                   OrientationReport& report) {
   Sides sides(cloud, signs, areas);
   sides.find_cavities(signs.component);
-  std::size_t n = 0;
+  const auto is_doubtful = [&](std::size_t c) { return !sides.bodies[c].tells_sides() || sides.half_inside[c]; };
   for (std::size_t c = 0; c < sides.bodies.size(); ++c)
-    if (!sides.bodies[c].tells_sides() || sides.half_inside[c]) n += sides.bodies[c].n_points;
-  return n;
+    if (is_doubtful(c)) report.n_doubtful += sides.bodies[c].n_points;
+  if (report.n_doubtful == 0) return;
+  for (const auto component : signs.component) report.is_doubtful.push_back(is_doubtful(component) ? 1 : 0);
 }
 
 /// What the pairs along the border of a region say, and the region itself.
@@ -292,7 +295,7 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
     keep_undisputed(cloud, areas, edges, params.disagreement, few, signs.sign);
   }
   if (given == Given::Signs && lie_on_another_sheet(cloud, *near, signs.sign)) signs.sign.assign(n, 1);
-  report.n_doubtful = doubtful_points(cloud, signs, areas);
+  find_doubtful(cloud, signs, areas, report);
   for (std::size_t i = 0; i < n; ++i) {
     if (signs.sign[i] > 0 || cloud.normals[i].isZero(0)) continue;
     cloud.normals[i] = -cloud.normals[i];
@@ -342,6 +345,11 @@ OrientationReport orient(OrientedPointCloud& cloud, const OrientationParams& par
     if (!is_wrong) continue;
     n = -n;
     ++report.n_turned;
+  }
+  if (!report.is_doubtful.empty()) {
+    std::vector<std::uint8_t> of_all(cloud.points.size());
+    for (std::size_t i = 0; i < of_all.size(); ++i) of_all[i] = report.is_doubtful[covering->representative[i]];
+    report.is_doubtful = std::move(of_all);
   }
   report.n_doubtful = report.n_doubtful * cloud.points.size() / few.points.size();
   report.left_alone = report.n_turned == 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,8 @@ struct OrientationReport {
   std::size_t n_components = 0;  ///< components of at least 100 points, each oriented separately
   std::size_t n_cavities = 0;    ///< components inside another one: their normals point into the hole
   std::size_t n_doubtful = 0;  ///< points whose outward side is a guess: of pieces that are open, flat, or half inside
-  bool left_alone = false;     ///< repair: nothing to turn; the bits are unchanged
+  std::vector<std::uint8_t> is_doubtful;  ///< whether a point is among them; empty if none is
+  bool left_alone = false;                ///< repair: nothing to turn; the bits are unchanged
 };
 
 /// Unless `near` is given, the functions below search the params.neighbours nearest neighbours of every point

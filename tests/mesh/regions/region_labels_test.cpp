@@ -23,7 +23,7 @@ RegionLabels labels_of(const RegionDomain& domain, const BackgroundMesh& backgro
 TEST(RegionLabels, SignsAloneLeaveVerticesThatAreNotValid) {
   const BackgroundMesh background(a15(), kBox, .12);
   const RegionDomain domain = RegionDomain::of_bodies({ball({.01, .02, .03}, 1)});
-  const RegionLabels made = labels_of(domain, background, {.max_sweeps = 0, .pair_rounds = 0});
+  const RegionLabels made = labels_of(domain, background, {.max_sweeps = 0, .pair_rounds = 0, .annealing_rounds = 0});
   EXPECT_GT(made.n_invalid_at_start, made.n_interface / 20);
   EXPECT_EQ(made.invalid.size(), made.n_invalid_at_start);
 }

@@ -141,6 +141,23 @@ TEST(RegionMesh, ADoubleBubbleHasItsCurveWhereAllThreeMeet) {
   }
 }
 
+TEST(RegionMesh, ABallCutThroughItsCentreHasItsThreeSheets) {
+  // Wedges of 90, 90 and nearly 180 degrees: two sheets at the curve are almost one.
+  const BackgroundMesh background = lattice(1.5, .12);
+  for (const Position& p : positions(2, .1)) {
+    const PatchFunction whole = ball({0, 0, 0}, 1);
+    const RegionDomain domain =
+        RegionDomain::of_least({testing::zero(), placed(testing::tilted(whole, {.02, 0, 0}), p.R, p.shift),
+                                placed(testing::tilted(whole, {-.02, 0, 0}), p.R, p.shift)});
+    const RegionMesh made = make_region_mesh(domain, background);
+    EXPECT_TRUE(made.defects.empty());
+    const RegionCertificate c = certify_regions(made.mesh, made.region, &domain, background.h());
+    EXPECT_TRUE(failures(c, 3).empty()) << failures(c, 3)[0];
+    EXPECT_GE(c.whole.quality.min, .7);
+    EXPECT_NEAR(measures_of(c, 1).certificate.volume, 2 * kPi / 3, .03);
+  }
+}
+
 TEST(RegionMesh, EveryInterfaceFaceHasOneTetOnEitherSide) {
   const BackgroundMesh background = lattice(1.6, .15);
   const RegionMesh made = make_region_mesh(RegionDomain::of_bodies({ball({0, 0, 0}, 1)}), background);

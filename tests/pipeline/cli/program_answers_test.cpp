@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <regex>
 
 #include "tests/pipeline/cli/program_fixture.h"
 
@@ -23,7 +24,8 @@ TEST_F(Program, HelpIsAboutTheCommand) {
     }
     EXPECT_NE(r.out.find("\nExit codes: "), std::string::npos) << r.out;
   }
-  EXPECT_NE(run("reconstruct --help").out.find("{area,paper} (default area)"), std::string::npos);
+  const std::string help = run("reconstruct --help").out;
+  EXPECT_NE(std::regex_replace(help, std::regex("\\s+"), " ").find("{area,paper} (default area)"), std::string::npos);
   EXPECT_EQ(run("rum --help").code, 2);
   EXPECT_EQ(Json::parse(run("--json mesh nowhere").out)["exit_code"], 2);
 }
@@ -92,8 +94,45 @@ TEST_F(Program, WhatHasNoEndOrTakesTooMuchIsRefusedAtOnce) {
   EXPECT_EQ(run("mesh --implicit 'x^2+y^2+z^2-1' --box -2,-2,-2,2,2,2 --h 1e-4 --max-tets 1e12 -o a", at_once).code, 9);
 }
 
+TEST_F(Program, FlagsAreInGroupsAndWrapped) {
+  const std::string help = run("run --help").out;
+  std::size_t at = 0;
+  for (const char* group : {"Input:", "Level set:", "Size:", "Output:", "Stages:", "Verdict:", "Paper:", "Program:"}) {
+    const std::size_t next = help.find("\n" + std::string(group) + "\n", at);
+    ASSERT_NE(next, std::string::npos) << group;
+    at = next;
+  }
+  EXPECT_GT(help.find("  --normals "), help.find("\nInput:"));
+  EXPECT_LT(help.find("  --normals "), help.find("\nLevel set:"));
+  std::istringstream lines(help.substr(help.find("\nInput:"), help.find("\nExamples:") - help.find("\nInput:")));
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+  // Every flag of the command is there.
+  for (const char* flag : {"-o", "--json", "-q,", "--until", "--max-memory", "--mode", "--accept", "--tets", "--edges"})
+    EXPECT_NE(help.find("\n  " + std::string(flag)), std::string::npos) << flag;
+}
+
+TEST_F(Program, TheSummaryHasThreeLinesAndIsQuietOnRequest) {
+  const auto first_words = [](const std::string& text) {
+    std::vector<std::string> words;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) words.push_back(line.substr(0, line.find(' ')));
+    return words;
+  };
+  const Result r = run(ball);
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(first_words(r.out), (std::vector<std::string>{"verdict", "quality", "doubts", "files"})) << r.out;
+  EXPECT_NE(r.out.find("doubts    none\n"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("one body without handles"), std::string::npos) << r.out;
+  EXPECT_EQ(run(ball + "-q").out, "");
+  const std::string all = run(ball + "-v").out;
+  EXPECT_NE(all.find("\nboundary  closed manifold"), std::string::npos) << all;
+  EXPECT_NE(all.find("quality.csv"), std::string::npos) << all;
+  const Result failed = run("mesh --implicit 'x^2+y^2+z^2-1' --box=-6,-6,-6,6,6,6 --h 5 -o coarse");
+  EXPECT_EQ(first_words(failed.out), (std::vector<std::string>{"verdict", "quality", "blame", "files"})) << failed.out;
+}
+
 TEST_F(Program, GatesAndImpossibleMeshesHaveTheirCodes) {
-  const Result gate = run(ball + "--min-quality .99");
+  const Result gate = run(ball + "--min-quality .99 -v");
   EXPECT_EQ(gate.code, 6);
   EXPECT_NE(gate.out.find("below the gate"), std::string::npos);
   EXPECT_TRUE(fs::exists(folder / "ball/3-mesh/mesh.vtu"));
@@ -121,7 +160,7 @@ TEST_F(Program, GatesAndImpossibleMeshesHaveTheirCodes) {
 TEST_F(Program, ABodyMeshedFarTooCoarselyIsNoSuccess) {
   for (const char* call :
        {"mesh --implicit 'x^2+y^2+z^2-1' --box=-6,-6,-6,6,6,6 --h 5 -o ball", "run egg.ply --h 5 -o egg"}) {
-    const Result r = run(call);
+    const Result r = run(std::string(call) + " -v");
     EXPECT_EQ(r.code, 6) << r.err;
     EXPECT_NE(r.out.find("volume_gap: between the flat faces and psi = 0 lies"), std::string::npos) << r.out;
     EXPECT_NE(r.out.find("try a smaller --h"), std::string::npos) << r.out;

@@ -44,7 +44,7 @@ TEST_F(Program, ThinPlacesThatComeOutRightAreNamedInTheCertificate) {
   EXPECT_LT(places[0]["h_needed"], .3);
   EXPECT_GT(fs::file_size(folder / "lens/3-mesh/too_thin.vtp"), 0u);
   EXPECT_NE(content(folder / "lens/3-mesh/record.json").find("too_thin.vtp"), std::string::npos);
-  EXPECT_NE(run("mesh lens").out.find("thinner than h can show"), std::string::npos);
+  EXPECT_NE(run("mesh lens -v").out.find("thinner than h can show"), std::string::npos);
 }
 
 TEST_F(Program, AMeshThatLacksWhatIsThinIsNotRight) {

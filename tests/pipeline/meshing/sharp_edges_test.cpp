@@ -48,7 +48,7 @@ TEST_F(Program, BodiesWithSharpEdgesHaveThemInTheMesh) {
       {"max(max(abs(x),abs(y),abs(z))-1,1-(x-1)^2-(y-1)^2-(z-1)^2)", 15, 10, 7, 8 - kPi / 6, .01, .65}};
   for (const Body& body : bodies) {
     SCOPED_TRACE(body.formula);
-    const Result r = run("mesh --implicit '" + std::string(body.formula) + "'" + kBox + "--h .2 -o body --strict");
+    const Result r = run("mesh --implicit '" + std::string(body.formula) + "'" + kBox + "--h .2 -o body --strict -v");
     ASSERT_EQ(r.code, 0) << r.out << r.err;
     const Json c = Json::parse(content(folder / "body/certificate.json"));
     const Json& f = c["features"];

@@ -33,6 +33,17 @@ TEST_F(Diff, NamesTheFirstStageThatDiffersAndByHowMuch) {
   for (const Json& p : mesh["stages"][2]["parameters"]) tets = tets || (p["at"] == "/tets" && p["b"] == 2000);
   EXPECT_TRUE(tets);
 
+  // The text leaves out what looks alike in three digits, and ends in a picture.
+  const Result text = run("diff a b");
+  EXPECT_NE(text.out.find("parameter tets: 3000 | 2000"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("more (-v)"), std::string::npos) << text.out;
+  EXPECT_TRUE(text.out.ends_with("picture: b/diff.html\n")) << text.out;
+  EXPECT_GT(run("diff a b -v").out.size(), text.out.size());
+  EXPECT_GT(fs::file_size(folder / "b/diff.html"), 100'000U);
+  EXPECT_EQ(run("diff a b -o other.html").code, 0);
+  EXPECT_EQ(content(folder / "other.html"), content(folder / "b/diff.html"));
+  EXPECT_TRUE(Json::parse(run("diff a a --json").out)["picture"].is_null());
+
   ASSERT_EQ(run("reconstruct b --smooth 50").code, 0);
   const Json psi = diff("a", "b");
   EXPECT_EQ(psi["first_difference"], "level-set");

@@ -51,7 +51,7 @@ class Holes : public Program {
 
 TEST_F(Holes, AHoleIsNamed) {
   write_ball_with_a_hole("ball.xyz");
-  const Result r = run("run ball.xyz -o ball --tets 20000 --units mm --export inp,msh22");
+  const Result r = run("run ball.xyz -o ball --tets 20000 --units mm --export inp,msh22 -v");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_NE(r.out.find("\nholes     1 closed where there are no samples: "), std::string::npos) << r.out;
   const Json domain = certificate("ball")["domain"];

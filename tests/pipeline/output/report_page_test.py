@@ -6,6 +6,7 @@ usage: report_page_test.py UMTET CLOUD     exit code 77: there is no Chromium (D
 import json
 import math
 import pathlib
+import random
 import re
 import shutil
 import struct
@@ -174,6 +175,184 @@ def places_are_shown(umtet, folder):
     near, said_near = opened(f"file://{report}#spot=1", folder / "h")
     assert not said + said_near, said + said_near
     assert near.body["data-pixels"] != page.body["data-pixels"], page.body
+    assert int(near.body["data-marked-faces"]) > 0, near.body
+    driven_page, said = driven(report, CONTROLS, folder / "lens_profile")
+    assert not said, said
+    marked = json.loads(driven_page.body["data-seen"])["marked_faces"]
+    assert marked and all(text.startswith("defect ") and n > 0 for n, text, _ in marked), marked
+
+
+def driven(report, script, profile):
+    """The page after a script that ran in it, with a copy of the report beside the report."""
+    copy = report.with_name(f"driven_{profile.name}.html")
+    copy.write_text(report.read_text().replace("</body>", f"<script>{script}</script>\n</body>"))
+    return opened(f"file://{copy}", profile)
+
+
+def sphere(n):
+    for k in range(n):
+        z, a = 1 - (2 * k + 1) / n, 2.399963 * k
+        yield math.sqrt(1 - z * z) * math.cos(a), math.sqrt(1 - z * z) * math.sin(a), z
+
+
+CONTROLS = """
+const data = document.body.dataset, $ = (id) => document.getElementById(id);
+const key = (name) => window.dispatchEvent(new KeyboardEvent("keydown", {key: name}));
+const act = (id, change) => { change($(id)); $(id).dispatchEvent(new Event("input")); };
+const pixels = () => {
+  const gl = $("canvas").getContext("webgl2") || $("canvas").getContext("webgl"), b = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+  gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, b);
+  let n = 0;
+  for (let i = 3; i < b.length; i += 4) n += b[i] > 0;
+  return n;
+};
+const drawn = pixels;
+window.requestAnimationFrame = (render) => render();  // pictures are drawn at once
+{
+  const seen = {};
+  for (let k = 0; k < document.querySelectorAll("#strip button").length; ++k) {
+    key("ArrowRight");
+    seen[data.stage] = {pixels: drawn(), command: $("command") ? $("command").textContent : "", samples: Number(data.samples),
+                        marked: Number(data.marked), faces: Number(data.faces), info: $("stage-info").textContent};
+  }
+  const last = data.stage;
+  key("ArrowLeft");
+  const before = data.stage;
+  key("ArrowRight");
+  seen.keys = [last, before, data.stage];
+  $("stage-mesh").click();
+  act("axis", (e) => e.value = "0");
+  drawn();
+  seen.cut = data.cut;
+  act("place", (e) => e.value = "0.3");
+  drawn();
+  seen.cutAside = data.cut;
+  act("axis", (e) => e.value = "");
+  act("worst", (e) => e.checked = true);
+  seen.worst = [drawn(), $("worst-count").value];
+  act("worst", (e) => e.checked = false);
+  for (const on of $("cloud") ? [true, false] : []) {
+    act("cloud", (e) => e.checked = on);
+    drawn();
+    if (on) seen.shown = data.samples;
+  }
+  act("beside", (e) => e.value = $("cloud") ? "cloud" : "level-set");
+  seen.beside = [drawn(), $("names").textContent];
+  act("beside", (e) => e.value = "");
+  drawn();
+  const box = $("canvas").getBoundingClientRect();
+  seen.picked = [];
+  for (const [x, y] of [[.5, .5], [.45, .4], [.55, .6], [.4, .6], [.6, .4], [.02, .02]]) {
+    const at = {clientX: box.left + x * box.width, clientY: box.top + y * box.height, button: 0, pointerId: 1, bubbles: true};
+    $("canvas").setPointerCapture = () => {};
+    $("canvas").dispatchEvent(new PointerEvent("pointerdown", at));
+    $("canvas").dispatchEvent(new PointerEvent("pointerup", at));
+    seen.picked.push($("picked").hidden ? "" : $("picked").innerText);
+  }
+  HTMLAnchorElement.prototype.click = function () { seen.saved = [this.download, this.href.length, this.href.slice(0, 22)]; };
+  $("save").click();
+  seen.marked_faces = [];
+  for (const button of document.querySelectorAll("button[data-place], button[data-missed], button[data-hole]")) {
+    button.click();
+    seen.marked_faces.push([Number(data.markedFaces), $("picked").textContent, drawn()]);
+    if (seen.marked_faces.length >= 4) break;
+  }
+  data.seen = JSON.stringify(seen);
+}
+"""
+
+
+def every_control_works(umtet, folder):
+    """A noisy ball with outliers and turned normals, and a lens: every stage has a picture, its numbers and a command."""
+    with open(folder / "strip.xyz", "w") as cloud:
+        for k, (x, y, z) in enumerate(sphere(4000)):
+            s = -1 if k % 10 == 0 else 1
+            cloud.write(f"{x} {y} {z} {s * x} {s * y} {s * z}\n")
+        for k in range(40):
+            cloud.write(f"{2 * math.sin(k)} {2 * math.cos(7 * k)} {1.7 * math.sin(3 * k)} 0 0 1\n")
+    case = folder / "strip"
+    subprocess.run([umtet, "run", folder / "strip.xyz", "-o", case, "--tets", "9000", "-q", "--progress", "none"], check=True,
+                   stdout=subprocess.DEVNULL)
+    page, said = driven(case / "report.html", CONTROLS, folder / "strip_profile")
+    assert not said, said
+    seen = json.loads(page.body["data-seen"])
+    stages = ["input", "cloud", "level-set", "chosen", "projected", "mesh"]
+    records = {name: json.loads((case / folder_of / "record.json").read_text())
+               for name, folder_of in (("cloud", "1-cloud"), ("mesh", "3-mesh"))}
+    numbers = records["cloud"]["numbers"]
+    for name in stages:
+        assert seen[name]["pixels"] > 20_000, (name, seen[name])
+        assert seen[name]["command"], name
+    assert seen["keys"] == ["mesh", "projected", "mesh"], seen["keys"]
+    assert seen["shown"] == str(numbers["n_points"]), seen["shown"]
+    n_dropped = numbers["dropped"]["outliers"] + numbers["dropped"]["small_components"]
+    assert n_dropped > 20 and numbers["normals"]["turned"] >= 400, numbers
+    assert seen["input"]["marked"] == n_dropped, (seen["input"], n_dropped)
+    assert seen["cloud"]["marked"] == n_dropped + numbers["normals"]["turned"], seen["cloud"]
+    assert "turned" in seen["cloud"]["info"], seen["cloud"]
+    certificate = json.loads((case / "certificate.json").read_text())
+    assert seen["mesh"]["faces"] == certificate["boundary"]["n_faces"] == seen["projected"]["faces"], seen
+    assert seen["cut"] == seen["cutAside"] == "tets", seen
+    assert 20_000 < seen["worst"][0] and int(seen["worst"][1]) == 50, seen["worst"]
+    assert "cloud" in seen["beside"][1] and seen["beside"][0] > 10_000, seen["beside"]
+    found = [text for text in seen["picked"] if text]
+    assert len(found) >= 3 and not seen["picked"][-1], seen["picked"]
+    assert any(re.search(r"boundary face of tet \d+", text) and "mean ratio Q" in text for text in found), found
+    assert seen["saved"][0] == "strip-mesh.png" and seen["saved"][1] > 5000 and seen["saved"][2] == "data:image/png;base64,", seen
+    # Every command runs alone, in a copy of the case.
+    for name in stages:
+        command = seen[name]["command"].replace("umtet ", f"{umtet} ").replace("--progress", "")
+        command = command + (" --no-report" if name not in ("input", "cloud", "level-set") else "")
+        done = subprocess.run(["/bin/sh", "-c", f"rm -rf {case}-2 && {command} -q"], capture_output=True, text=True, check=False)
+        assert done.returncode in (0, 6), (name, command, done)
+    # The last of these copies has another h: its difference from the case is a picture, too.
+    subprocess.run([umtet, "diff", case, f"{case}-2"], check=True, stdout=subprocess.DEVNULL)
+    page, said = opened(f"file://{case}-2/diff.html#beside=b", folder / "diff_profile")
+    assert not said and int(page.body["data-pixels"]) > 20_000 and page.body["data-stage"] == "a", (said, page.body)
+    assert "distance to the other boundary" in page.page
+
+
+def a_failed_run_has_a_report(umtet, folder):
+    """Normals that contradict each other: no level set. The page shows the cloud, and says that its normals are to blame."""
+    with open(folder / "wild.xyz", "w") as cloud:
+        numbers = random.Random(1)
+        for x, y, z in sphere(4000):
+            n = [numbers.gauss(0, 1) for _ in range(3)]
+            cloud.write(f"{x} {y} {z} {' '.join(str(c / math.hypot(*n)) for c in n)}\n")
+    done = subprocess.run([umtet, "run", folder / "wild.xyz", "-o", folder / "wild", "--normals", "given", "--tets", "5000",
+                           "--progress", "none"], capture_output=True, text=True, check=False)
+    assert done.returncode == 4 and "report.html shows the stages" in done.stderr, done
+    report = folder / "wild/report.html"
+    for again in (False, True):
+        if again:
+            report.unlink()
+            subprocess.run([umtet, "report", folder / "wild", "-q"], check=True, stdout=subprocess.DEVNULL)
+        page, said = opened(f"file://{report}", folder / f"wild_{again}")
+        assert not said, said
+        assert page.body["data-stage"] == "cloud" and int(page.body["data-pixels"]) > 10_000, page.body
+        assert "exit code 4" in page.page and "of the normals agree with their neighbours" in page.page
+    # A case that is only begun has a report, too; one that ends well has no trace of the failure.
+    subprocess.run([umtet, "run", folder / "wild.xyz", "-o", folder / "begun", "--until", "cloud", "-q"], check=True,
+                   stdout=subprocess.DEVNULL)
+    subprocess.run([umtet, "report", folder / "begun", "-q"], check=True, stdout=subprocess.DEVNULL)
+    page, said = opened(f"file://{folder}/begun/report.html", folder / "begun_profile")
+    assert not said and "There is no mesh yet" in page.page and int(page.body["data-pixels"]) > 10_000, (said, page.body)
+    subprocess.run([umtet, "run", folder / "wild", "--normals", "estimate", "--progress", "none", "-q"], check=True,
+                   stdout=subprocess.DEVNULL)
+    assert not (folder / "wild/failure.json").exists()
+    assert "exit code 4" not in report.read_text()
+
+
+def a_large_mesh_can_be_cut_anywhere(umtet, folder):
+    """More tets than a page holds: cells with the least Q at the cut, tets at the middle planes."""
+    subprocess.run([umtet, "mesh", "--implicit", "x^2+y^2+z^2-1", "--box=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--tets", "250000", "-o",
+                    folder / "large", "-q", "--progress", "none"], check=True, stdout=subprocess.DEVNULL)
+    report = folder / "large/report.html"
+    assert len(report.read_text()) < 8e6
+    for place, by in (("0.5", "tets"), ("0.3", "cells"), ("0.77", "cells")):
+        page, said = opened(f"file://{report}#axis=1&place={place}", folder / f"large_{place}")
+        assert not said and page.body["data-cut"] == by, (said, page.body)
+        assert int(page.body["data-pixels"]) > 20_000, page.body
 
 
 def main(umtet, cloud):
@@ -197,7 +376,10 @@ def main(umtet, cloud):
                 lambda: patches_are_those_of_the_files(umtet, pathlib.Path(folder)),
                 lambda: holes_are_shown(umtet, pathlib.Path(folder)),
                 lambda: what_samples_carry_is_a_colour(umtet, pathlib.Path(folder)),
-                lambda: places_are_shown(umtet, pathlib.Path(folder))))
+                lambda: places_are_shown(umtet, pathlib.Path(folder)),
+                lambda: every_control_works(umtet, pathlib.Path(folder)),
+                lambda: a_failed_run_has_a_report(umtet, pathlib.Path(folder)),
+                lambda: a_large_mesh_can_be_cut_anywhere(umtet, pathlib.Path(folder))))
         assert not said + cut_said, said + cut_said
         numbers_are_those_of(certificate, page)
         assert page.body["data-webgl"] == "drawn", page.body

@@ -6,6 +6,8 @@
 #include <vtkPointData.h>
 #include <vtkXMLImageDataReader.h>
 
+#include <regex>
+
 #include "tests/pipeline/cli/program_fixture.h"
 
 namespace umtet {
@@ -49,14 +51,19 @@ def reader(**k):
     for name in names if isinstance(names, list) else [names]:
         print("reads", os.path.getsize(name), name)
     return Thing()
-PLYReader = XMLImageDataReader = XMLUnstructuredGridReader = PVDReader = reader
-Slice = Clip = Contour = GetActiveViewOrCreate = Show = Hide = RenameSource = ColorBy = ResetCamera = Render = GetActiveCamera = Thing()
+PLYReader = XMLImageDataReader = XMLUnstructuredGridReader = XMLPolyDataReader = PVDReader = reader
+Glyph = GetColorTransferFunction = HideScalarBarIfNotNeeded = Slice = Clip = Contour = GetActiveViewOrCreate = Show = Hide = RenameSource = ColorBy = ResetCamera = Render = GetActiveCamera = Thing()
 )";
   const std::string call = "cd / && PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='" + folder.string() + "' /usr/bin/python3 '" +
                            (folder / "egg/5-view/view.py").string() + "' >'" + (folder / "read").string() + "'";
   ASSERT_EQ(std::system(call.c_str()), 0);
   const std::string read = content(folder / "read");
-  EXPECT_EQ(std::count(read.begin(), read.end(), '\n'), 4) << read;
+  EXPECT_EQ(std::count(read.begin(), read.end(), '\n'), 6) << read;
+  // The script finds the case where it is moved to.
+  fs::rename(folder / "egg", folder / "moved");
+  const std::string moved = std::regex_replace(call, std::regex("/egg/5-view"), "/moved/5-view");
+  EXPECT_EQ(std::system(moved.c_str()), 0);
+  fs::rename(folder / "moved", folder / "egg");
   const std::string pvd = content(folder / "egg/3-mesh/iterates.pvd");
   std::vector<std::string> files;
   for (std::size_t at = pvd.find("file=\""); at != std::string::npos; at = pvd.find("file=\"", at + 1)) {

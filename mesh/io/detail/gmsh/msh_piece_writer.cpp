@@ -236,6 +236,7 @@ void write_msh41_piece(const std::filesystem::path& path, const MshPiece& piece)
 void write_msh41_piece(const std::filesystem::path& path, const SolverMesh& mesh) {
   require_consistent(mesh);
   if (mesh.nodes_per_tet != 4) throw std::invalid_argument("parts for Gmsh are of tets with 4 nodes");
+  if (!mesh.regions.empty()) throw std::invalid_argument("parts for Gmsh are of one body");
   MshPiece piece;
   piece.body = mesh.body;
   piece.patches = mesh.patches;

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -23,6 +25,9 @@ class MshReader {
 
  private:
   void read_format();
+  void read_names();
+  void read_entities();
+  void take_marks(std::int64_t physical, std::int64_t entity, std::size_t n);
   void read_nodes22();
   void read_nodes41();
   void read_elements22();
@@ -53,7 +58,51 @@ class MshReader {
   double version_ = 0;
   bool binary_ = false;
   bool has_nodes_ = false, has_elements_ = false;
+  std::map<std::int64_t, std::int64_t> physical_;  ///< the first physical group of each volume, 4.1
+  std::map<std::int64_t, std::string> names_;      ///< of physical groups of volumes
+  std::vector<std::int64_t> groups_, volumes_;     ///< of each tet; 0: none
+  bool is_partitioned_ = false;                    ///< entities are parts of volumes
 };
+
+/// The names of physical volumes; those of other groups are skipped.
+void MshReader::read_names() {
+  const std::size_t n = in_.count("number of physical names", 4);
+  in_.line();
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto dimension = in_.number<std::int64_t>("dimension of a physical group");
+    const auto number = in_.number<std::int64_t>("number of a physical group");
+    const std::string_view rest = in_.line();
+    const std::size_t begin = rest.find('"'), end = rest.rfind('"');
+    if (dimension == 3 && begin != std::string_view::npos && end > begin)
+      names_.emplace(number, rest.substr(begin + 1, end - begin - 1));
+  }
+}
+
+/// The physical groups of volumes, 4.1.
+void MshReader::read_entities() {
+  std::array<std::size_t, 4> n{};
+  for (std::size_t& count : n) count = in_.checked_count(get_size("number of entities"), "number of entities", 4);
+  for (int dimension = 0; dimension < 4; ++dimension) {
+    for (std::size_t i = 0; i < n[static_cast<std::size_t>(dimension)]; ++i) {
+      const std::int64_t entity = get_int("entity");
+      for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) get_double("box of an entity");
+      const std::size_t n_groups = in_.checked_count(get_size("physical groups"), "physical groups", 2);
+      for (std::size_t g = 0; g < n_groups; ++g) {
+        const std::int64_t group = get_int("physical group");
+        if (dimension == 3) physical_.emplace(entity, group);
+      }
+      if (dimension == 0) continue;
+      const std::size_t n_bounds = in_.checked_count(get_size("bounding entities"), "bounding entities", 2);
+      for (std::size_t b = 0; b < n_bounds; ++b) get_int("bounding entity");
+    }
+  }
+  in_.skip_behind_line("$EndEntities");
+}
+
+void MshReader::take_marks(std::int64_t physical, std::int64_t entity, std::size_t n) {
+  groups_.insert(groups_.end(), n, physical);
+  volumes_.insert(volumes_.end(), n, entity);
+}
 
 void MshReader::read_format() {
   version_ = in_.number<double>("version");
@@ -133,6 +182,7 @@ void MshReader::read_binary_block22(std::size_t& left) {
   if (count < 1 || static_cast<std::size_t>(count) > left)
     in_.refuse("elements in this block: " + std::to_string(count));
   if (n_tags < 0 || n_tags > 1024) in_.refuse("number of tags: " + std::to_string(n_tags));
+  const auto n_skipped = static_cast<std::size_t>(std::max(n_tags - 2, 0));
   const std::size_t head = 4 * (1 + static_cast<std::size_t>(n_tags)), body = 4 * static_cast<std::size_t>(n_nodes);
   in_.checked_count(static_cast<std::uint64_t>(count), "elements in this block", head + body);
   left -= static_cast<std::size_t>(count);
@@ -141,7 +191,11 @@ void MshReader::read_binary_block22(std::size_t& left) {
     return;
   }
   for (std::int32_t e = 0; e < count; ++e) {
-    in_.skip(head, "element");
+    in_.raw<std::int32_t>("element number");
+    const std::int64_t group = n_tags > 0 ? in_.raw<std::int32_t>("physical group") : 0;
+    const std::int64_t entity = n_tags > 1 ? in_.raw<std::int32_t>("entity") : 0;
+    in_.skip(4 * n_skipped, "tags");
+    take_marks(group, entity, 1);
     const int n = take_tet(type, [&] { return in_.raw<std::int32_t>("node of a tet"); });
     in_.skip(body - 4 * static_cast<std::size_t>(n), "element");
   }
@@ -158,7 +212,12 @@ void MshReader::read_elements22() {
       const auto type = in_.number<std::int64_t>("element type");
       if (is_tet(type)) {
         const auto n_tags = in_.number<std::int64_t>("number of tags");
-        for (std::int64_t k = 0; k < n_tags; ++k) in_.number<std::int64_t>("tag");
+        std::array<std::int64_t, 2> marks{};
+        for (std::int64_t k = 0; k < n_tags; ++k) {
+          const auto tag = in_.number<std::int64_t>("tag");
+          if (k < 2) marks[static_cast<std::size_t>(k)] = tag;
+        }
+        take_marks(marks[0], marks[1], 1);
         take_tet(type, [&] { return in_.number<std::int64_t>("node of a tet"); });
       }
       in_.line();
@@ -169,7 +228,7 @@ void MshReader::read_elements22() {
 
 void MshReader::read_block41() {
   get_int("dimension");
-  get_int("entity");
+  const std::int64_t entity = get_int("entity");
   const std::int64_t type = get_int("element type");
   const auto body = static_cast<std::size_t>(nodes_of(type));
   const std::size_t least_bytes = binary_ ? 8 * (1 + body) : 2 * (1 + body);
@@ -183,6 +242,8 @@ void MshReader::read_block41() {
     }
     return;
   }
+  const auto group = physical_.find(entity);
+  take_marks(group == physical_.end() ? 0 : group->second, entity, count);
   for (std::size_t e = 0; e < count; ++e) {
     get_size("element number");
     const int n = take_tet(type, [&] { return static_cast<std::int64_t>(get_size("node of a tet")); });
@@ -208,18 +269,27 @@ NumberedMesh MshReader::read() {
     in_.line();
     const bool nodes = section == "$Nodes", elements = section == "$Elements";
     if ((nodes && has_nodes_) || (elements && has_elements_)) in_.refuse("a second section " + std::string(section));
-    if (nodes) {
+    if (section == "$PhysicalNames") {
+      read_names();
+      expect_end("$EndPhysicalNames");
+    } else if (section == "$Entities" && version_ > 3) {
+      read_entities();
+    } else if (nodes) {
       version_ < 3 ? read_nodes22() : read_nodes41();
       has_nodes_ = true;
     } else if (elements) {
       version_ < 3 ? read_elements22() : read_elements41();
       has_elements_ = true;
     } else {
+      is_partitioned_ = is_partitioned_ || section == "$PartitionedEntities";
       in_.skip_behind_line("$End" + std::string(section.substr(1)));
     }
   }
   if (!has_nodes_ || !has_elements_) in_.refuse("no $Nodes or no $Elements in this file");
   if (mesh_.tets.empty()) in_.refuse("no tets in this file");
+  const bool has_groups = std::any_of(groups_.begin(), groups_.end(), [](std::int64_t g) { return g != 0; });
+  if (!is_partitioned_) mesh_.region = std::move(has_groups ? groups_ : volumes_);
+  if (has_groups) mesh_.region_names = std::move(names_);
   return std::move(mesh_);
 }
 

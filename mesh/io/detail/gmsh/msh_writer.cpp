@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +29,13 @@ ElementKind face_kind(const SolverMesh& mesh) { return {mesh.nodes_per_tet == 4 
 class MshWriter {
  public:
   MshWriter(const std::filesystem::path& path, const SolverMesh& mesh, MshEncoding encoding)
-      : mesh_(mesh), binary_(encoding == MshEncoding::Binary), file_(path), faces_of_(mesh.patches.size()) {
+      : mesh_(mesh),
+        binary_(encoding == MshEncoding::Binary),
+        file_(path),
+        parts_(mesh.parts()),
+        tets_in_(parts_.size(), 0),
+        faces_of_(mesh.patches.size()) {
+    for (std::size_t t = 0; t < mesh.n_tets(); ++t) ++tets_in_[mesh.part_of(t)];
     for (std::size_t f = 0; f < mesh.n_faces(); ++f) faces_of_[mesh.face_patch[f]].push_back(static_cast<int>(f));
     for (const std::vector<int>& faces : faces_of_) n_patches_ += !faces.empty();
     for (const MeshCurve& curve : mesh.curves) n_lines_ += curve.edges.size();
@@ -45,6 +52,7 @@ class MshWriter {
   void head(const char* version);
   void element22(const ElementKind& kind, int group, const int* ids);
   void block22(const ElementKind& kind, std::size_t n);
+  std::vector<std::int32_t> surfaces_of(std::size_t part) const;
   void entities41();
   void nodes41();
   void block41(int dimension, int entity, int third, std::size_t n);
@@ -54,6 +62,8 @@ class MshWriter {
   const SolverMesh& mesh_;
   bool binary_;
   CheckedFile file_;
+  std::vector<MeshPart> parts_;             ///< that contain the tets
+  std::vector<std::size_t> tets_in_;        ///< by part
   std::vector<std::vector<int>> faces_of_;  ///< by patch
   std::uint64_t n_patches_ = 0;             ///< that have faces
   std::size_t n_lines_ = 0;                 ///< edges of curves
@@ -84,13 +94,16 @@ void MshWriter::put_nodes(const int* ids, const ElementKind& kind) {
 void MshWriter::head(const char* version) {
   file_.text("$MeshFormat\n").text(version).text(binary_ ? " 1 8\n" : " 0 8\n");
   if (binary_) file_.raw(std::int32_t{1}).text("\n");  // tells the reader our byte order
-  file_.text("$EndMeshFormat\n$PhysicalNames\n").number(mesh_.curves.size() + mesh_.patches.size() + 1).text("\n");
+  file_.text("$EndMeshFormat\n$PhysicalNames\n")
+      .number(mesh_.curves.size() + mesh_.patches.size() + parts_.size())
+      .text("\n");
   for (const auto& [part, edges] : mesh_.curves)
     file_.text("1 ").number(part.number).text(" \"").text(part.name).text("\"\n");
   for (const MeshPart& patch : mesh_.patches) {
     file_.text("2 ").number(patch.number).text(" \"").text(patch.name).text("\"\n");
   }
-  file_.text("3 ").number(mesh_.body.number).text(" \"").text(mesh_.body.name).text("\"\n$EndPhysicalNames\n");
+  for (const MeshPart& part : parts_) file_.text("3 ").number(part.number).text(" \"").text(part.name).text("\"\n");
+  file_.text("$EndPhysicalNames\n");
 }
 
 void MshWriter::block22(const ElementKind& kind, std::size_t n) {
@@ -123,7 +136,7 @@ void MshWriter::version22() {
   }
   block22(tet_kind(mesh_), mesh_.n_tets());
   for (std::size_t t = 0; t < mesh_.n_tets(); ++t) {
-    element22(tet_kind(mesh_), mesh_.body.number, mesh_.tet(t).data());
+    element22(tet_kind(mesh_), parts_[mesh_.part_of(t)].number, mesh_.tet(t).data());
   }
   file_.text("$EndElements\n");
   boundary_data();
@@ -135,10 +148,22 @@ void MshWriter::boundary_data() {
   for (const auto& [name, values] : mesh_.boundary_data) write_node_data(file_, {name, values}, binary_);
 }
 
+/// The numbers of the patches that bound a part.
+std::vector<std::int32_t> MshWriter::surfaces_of(std::size_t part) const {
+  std::vector<std::int32_t> surfaces;
+  for (std::size_t p = 0; p < faces_of_.size(); ++p) {
+    const auto is_of_part = [&](int f) { return mesh_.part_of(static_cast<std::size_t>(mesh_.face_tet[f])) == part; };
+    bool bounds = std::any_of(faces_of_[p].begin(), faces_of_[p].end(), is_of_part);
+    if (mesh_.is_interface(static_cast<int>(p))) {
+      const auto& sides = mesh_.interfaces[p + mesh_.interfaces.size() - mesh_.patches.size()];
+      bounds = bounds || static_cast<std::size_t>(sides[1]) == part;
+    }
+    if (bounds) surfaces.push_back(mesh_.patches[p].number);
+  }
+  return surfaces;
+}
+
 void MshWriter::entities41() {
-  Eigen::AlignedBox3d whole;
-  for (const Vec3& x : mesh_.nodes) whole.extend(x);
-  if (mesh_.nodes.empty()) whole.extend(Vec3::Zero().eval());
   const auto put_entity = [&](int entity, const Eigen::AlignedBox3d& box, std::uint64_t n_bounding) {
     put(std::int32_t{entity}, " ");
     put_point(box.min(), " ");
@@ -151,7 +176,7 @@ void MshWriter::entities41() {
   put(std::uint64_t{0}, " ");
   put(std::uint64_t{mesh_.curves.size()}, " ");
   put(n_patches_, " ");
-  put(std::uint64_t{1}, "\n");
+  put(std::uint64_t{parts_.size()}, "\n");
   for (const MeshCurve& curve : mesh_.curves) {
     Eigen::AlignedBox3d box;
     for (const int v : curve_nodes(curve)) box.extend(mesh_.nodes[v]);
@@ -165,9 +190,19 @@ void MshWriter::entities41() {
     }
     if (!box.isEmpty()) put_entity(mesh_.patches[p].number, box, 0);
   }
-  put_entity(mesh_.body.number, whole, n_patches_);
-  for (std::size_t p = 0, n = 0; p < faces_of_.size(); ++p) {
-    if (!faces_of_[p].empty()) put(std::int32_t{mesh_.patches[p].number}, ++n < n_patches_ ? " " : "\n");
+  for (std::size_t part = 0; part < parts_.size(); ++part) {
+    Eigen::AlignedBox3d box;
+    if (mesh_.regions.empty()) {
+      for (const Vec3& x : mesh_.nodes) box.extend(x);
+    }
+    for (std::size_t t = 0; !mesh_.regions.empty() && t < mesh_.n_tets(); ++t) {
+      if (mesh_.part_of(t) != part) continue;
+      for (const int i : mesh_.tet(t)) box.extend(mesh_.nodes[i]);
+    }
+    if (box.isEmpty()) box.extend(Vec3::Zero().eval());
+    const std::vector<std::int32_t> surfaces = surfaces_of(part);
+    put_entity(parts_[part].number, box, surfaces.size());
+    for (std::size_t k = 0; k < surfaces.size(); ++k) put(surfaces[k], k + 1 < surfaces.size() ? " " : "\n");
   }
   file_.text("$EndEntities\n");
 }
@@ -197,10 +232,16 @@ void MshWriter::nodes41() {
     std::erase_if(nodes, [&](int i) { return taken[i] != 0; });
     for (const int i : nodes) taken[i] = 1;
   }
-  entities.push_back({3, mesh_.body.number});
-  nodes_of.emplace_back();
+  // Of a region, so is any tet of a node that is on no face; a node without a tet is in the first part.
+  std::vector<std::size_t> part_of(mesh_.regions.empty() ? 0 : mesh_.nodes.size(), 0);
+  for (std::size_t t = 0; !part_of.empty() && t < mesh_.n_tets(); ++t) {
+    for (const int i : mesh_.tet(t)) part_of[i] = mesh_.part_of(t);
+  }
+  const std::size_t first_part = entities.size();
+  for (const MeshPart& part : parts_) entities.push_back({3, part.number});
+  nodes_of.resize(entities.size());
   for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (!taken[i]) nodes_of.back().push_back(static_cast<int>(i));
+    if (!taken[i]) nodes_of[first_part + (part_of.empty() ? 0 : part_of[i])].push_back(static_cast<int>(i));
   }
   std::uint64_t n_blocks = 0;
   for (const std::vector<int>& ids : nodes_of) n_blocks += !ids.empty();
@@ -221,7 +262,8 @@ void MshWriter::nodes41() {
 void MshWriter::elements41() {
   const std::uint64_t n = mesh_.n_tets() + mesh_.n_faces() + n_lines_;
   file_.text("$Elements\n");
-  put(mesh_.curves.size() + n_patches_ + (mesh_.n_tets() > 0 ? 1 : 0), " ");
+  const auto n_volumes = static_cast<std::uint64_t>(tets_in_.size() - std::count(tets_in_.begin(), tets_in_.end(), 0U));
+  put(mesh_.curves.size() + n_patches_ + n_volumes, " ");
   put(n, " ");
   put(std::uint64_t{n > 0}, " ");
   put(n, "\n");
@@ -241,10 +283,13 @@ void MshWriter::elements41() {
       put_nodes<std::uint64_t>(mesh_.face(f).data(), face);
     }
   }
-  if (mesh_.n_tets() > 0) block41(3, mesh_.body.number, tet.type, mesh_.n_tets());
-  for (std::size_t t = 0; t < mesh_.n_tets(); ++t) {
-    put(static_cast<std::uint64_t>(++id_), " ");
-    put_nodes<std::uint64_t>(mesh_.tet(t).data(), tet);
+  for (std::size_t part = 0; part < parts_.size(); ++part) {
+    if (tets_in_[part] > 0) block41(3, parts_[part].number, tet.type, tets_in_[part]);
+    for (std::size_t t = 0; t < mesh_.n_tets(); ++t) {
+      if (mesh_.part_of(t) != part) continue;
+      put(static_cast<std::uint64_t>(++id_), " ");
+      put_nodes<std::uint64_t>(mesh_.tet(t).data(), tet);
+    }
   }
   file_.text("$EndElements\n");
 }

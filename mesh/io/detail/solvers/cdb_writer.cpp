@@ -96,7 +96,8 @@ void write_elements(CheckedFile& file, const SolverMesh& mesh) {
   write_block_command(file, "EBLOCK,19,SOLID", mesh.n_tets(), "(19i9)");
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
     // Material, type, real constants and section; then coordinates, death, solid model and shape, which are not used.
-    file.text("        1        1        1        1        0        0        0        0");
+    write_right_aligned(file, mesh.regions.empty() ? 1 : mesh.regions[mesh.part_of(t)].number, kIdWidth);
+    file.text("        1        1        1        0        0        0        0");
     write_right_aligned(file, mesh.nodes_per_tet, kIdWidth);
     file.text("        0");
     write_right_aligned(file, static_cast<long long>(t) + 1, kIdWidth);
@@ -126,17 +127,27 @@ void write_component(CheckedFile& file, const std::string& name, std::string_vie
   }
 }
 
+/// Appends index i, which is greater than all before.
+void append(std::vector<std::pair<long long, long long>>& ranges, long long i) {
+  if (!ranges.empty() && ranges.back().second == i) {
+    ++ranges.back().second;
+  } else {
+    ranges.emplace_back(i + 1, i + 1);
+  }
+}
+
 /// @param nodes  ascending
 void write_node_component(CheckedFile& file, const std::string& name, const std::vector<int>& nodes) {
   std::vector<std::pair<long long, long long>> ranges;
-  for (const int i : nodes) {
-    if (!ranges.empty() && ranges.back().second == i) {
-      ++ranges.back().second;
-    } else {
-      ranges.emplace_back(i + 1LL, i + 1LL);
-    }
-  }
+  for (const int i : nodes) append(ranges, i);
   write_component(file, name, "NODE", ranges);
+}
+
+/// The tets of each part. @param names  beginning with those of the parts
+void write_element_components(CheckedFile& file, const SolverMesh& mesh, const std::vector<std::string>& names) {
+  std::vector<std::vector<std::pair<long long, long long>>> ranges(mesh.parts().size());
+  for (std::size_t t = 0; t < mesh.n_tets(); ++t) append(ranges[mesh.part_of(t)], static_cast<long long>(t));
+  for (std::size_t p = 0; p < ranges.size(); ++p) write_component(file, names[p], "ELEM", ranges[p]);
 }
 
 }  // namespace
@@ -144,7 +155,9 @@ void write_node_component(CheckedFile& file, const std::string& name, const std:
 void write_cdb(const std::filesystem::path& path, const SolverMesh& mesh) {
   require_consistent(mesh);
   detail::require_width(std::max(mesh.nodes.size(), mesh.n_tets()), kIdWidth, "an Ansys file");
-  std::vector<std::string> parts = {mesh.body.name};
+  std::vector<std::string> parts;
+  for (const MeshPart& part : mesh.parts()) parts.push_back(part.name);
+  const std::size_t n_bodies = parts.size();
   for (const MeshPart& patch : mesh.patches) parts.push_back(patch.name);
   if (mesh.patches.size() > 1) parts.emplace_back(kWholeBoundary);
   const std::size_t n_before_curves = parts.size();
@@ -154,11 +167,9 @@ void write_cdb(const std::filesystem::path& path, const SolverMesh& mesh) {
   write_header(file, mesh, parts, names);
   write_nodes(file, mesh);
   write_elements(file, mesh);
-  if (mesh.n_tets() > 0) {
-    write_component(file, names.front(), "ELEM", {{1LL, static_cast<long long>(mesh.n_tets())}});
-  }
+  write_element_components(file, mesh, names);
   const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
-  for (std::size_t p = 0; p < nodes.size(); ++p) write_node_component(file, names[p + 1], nodes[p]);
+  for (std::size_t p = 0; p < nodes.size(); ++p) write_node_component(file, names[n_bodies + p], nodes[p]);
   if (mesh.patches.size() > 1) write_node_component(file, names[n_before_curves - 1], boundary_nodes(mesh));
   for (std::size_t c = 0; c < mesh.curves.size(); ++c)
     write_node_component(file, names[n_before_curves + c], curve_nodes(mesh.curves[c]));

@@ -9,6 +9,7 @@ namespace umtet {
 namespace {
 
 constexpr std::size_t kIdsPerLine = 16;
+constexpr int kBoundary = -1;  // in place of a patch
 
 void write_nodes(CheckedFile& file, const SolverMesh& mesh) {
   file.text("    <Nodes name=\"").text(mesh.body.name).text("\">\n");
@@ -35,12 +36,16 @@ void write_ids(CheckedFile& file, std::string_view tag, std::size_t id, const in
 }
 
 void write_elements(CheckedFile& file, const SolverMesh& mesh) {
-  file.text("    <Elements type=\"").text(mesh.nodes_per_tet == 4 ? "tet4" : "tet10").text("\" name=\"");
-  file.text(mesh.body.name).text("\">\n");
-  for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-    write_ids(file, "elem", t + 1, mesh.tet(t).data(), mesh.nodes_per_tet);
+  const std::vector<MeshPart> parts = mesh.parts();
+  std::size_t id = 0;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    file.text("    <Elements type=\"").text(mesh.nodes_per_tet == 4 ? "tet4" : "tet10").text("\" name=\"");
+    file.text(parts[p].name).text("\">\n");
+    for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
+      if (mesh.part_of(t) == p) write_ids(file, "elem", ++id, mesh.tet(t).data(), mesh.nodes_per_tet);
+    }
+    file.text("    </Elements>\n");
   }
-  file.text("    </Elements>\n");
 }
 
 void write_node_set(CheckedFile& file, const std::string& name, const std::vector<int>& nodes) {
@@ -54,11 +59,11 @@ void write_node_set(CheckedFile& file, const std::string& name, const std::vecto
   file.text("\n    </NodeSet>\n");
 }
 
-/// @param patch  -1: all of them
+/// @param patch  kBoundary: all of the boundary
 void write_surface_set(CheckedFile& file, const SolverMesh& mesh, const std::string& name, int patch) {
   std::size_t id = 0;
   for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
-    if (patch >= 0 && mesh.face_patch[f] != patch) continue;
+    if (patch == kBoundary ? mesh.is_interface(mesh.face_patch[f]) : mesh.face_patch[f] != patch) continue;
     if (id == 0) file.text("    <Surface name=\"").text(name).text("\">\n");
     write_ids(file, mesh.nodes_per_tet == 4 ? "tri3" : "tri6", ++id, mesh.face(f).data(), mesh.nodes_per_face());
   }
@@ -83,7 +88,7 @@ void write_feb(const std::filesystem::path& path, const SolverMesh& mesh) {
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     write_surface_set(file, mesh, mesh.patches[p].name, static_cast<int>(p));
   }
-  if (mesh.patches.size() > 1) write_surface_set(file, mesh, kWholeBoundary, -1);
+  if (mesh.patches.size() > 1) write_surface_set(file, mesh, kWholeBoundary, kBoundary);
   file.text("  </Mesh>\n</febio_spec>\n");
   file.close();
 }

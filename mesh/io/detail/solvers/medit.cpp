@@ -12,7 +12,11 @@ namespace umtet {
 
 void write_medit(const std::filesystem::path& path, const SolverMesh& mesh) {
   require_consistent(mesh);
-  std::vector<int> reference(mesh.nodes.size(), mesh.body.number);
+  const std::vector<MeshPart> parts = mesh.parts();
+  std::vector<int> reference(mesh.nodes.size(), parts.front().number);
+  for (std::size_t t = 0; !mesh.regions.empty() && t < mesh.n_tets(); ++t) {
+    for (const int i : mesh.tet(t)) reference[i] = parts[mesh.part_of(t)].number;
+  }
   const std::vector<std::vector<int>> nodes = patch_nodes(mesh);
   for (std::size_t p = nodes.size(); p-- > 0;) {
     for (const int i : nodes[p]) reference[i] = mesh.patches[p].number;
@@ -33,7 +37,7 @@ void write_medit(const std::filesystem::path& path, const SolverMesh& mesh) {
   file.text(linear ? "\nTetrahedra\n" : "\nTetrahedraP2\n").number(mesh.n_tets()).text("\n");
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
     for (const int v : mesh.tet(t)) file.number(v + 1).text(" ");
-    file.number(mesh.body.number).text("\n");
+    file.number(parts[mesh.part_of(t)].number).text("\n");
   }
   file.text("\nEnd\n");
   file.close();
@@ -70,7 +74,7 @@ void read_tets(ByteCursor& in, int nodes, NumberedMesh& mesh) {
     if (nodes == 10) {
       for (auto& v : mesh.mid_sides.emplace_back()) v = in.number<std::int64_t>("vertex of a tet");
     }
-    in.number<std::int64_t>("tet reference");
+    mesh.region.push_back(in.number<std::int64_t>("tet reference"));
   }
 }
 

@@ -57,13 +57,16 @@ void write_grid(CheckedFile& file, std::size_t id, const Vec3& x) {
 
 void write_nastran(const std::filesystem::path& path, const SolverMesh& mesh) {
   require_consistent(mesh);
-  int largest = mesh.body.number;
+  const std::vector<MeshPart> parts = mesh.parts();
+  int largest = 0;
+  for (const MeshPart& part : parts) largest = std::max(largest, part.number);
   for (const MeshPart& patch : mesh.patches) largest = std::max(largest, patch.number);
   detail::require_width(
       std::max({mesh.nodes.size(), mesh.n_tets() + mesh.n_faces(), static_cast<std::size_t>(largest)}), kFieldWidth,
       "a Nastran file");
   CheckedFile file(path);
-  file.text("$ umtet: tets, property ").number(mesh.body.number).text(" = ").text(mesh.body.name).text("\n");
+  for (const MeshPart& part : parts)
+    file.text("$ umtet: tets, property ").number(part.number).text(" = ").text(part.name).text("\n");
   for (const MeshPart& patch : mesh.patches) {
     file.text("$ faces, property ").number(patch.number).text(", and nodes, SET1 ").number(patch.number);
     file.text(" = ").text(patch.name).text("\n");
@@ -78,7 +81,7 @@ void write_nastran(const std::filesystem::path& path, const SolverMesh& mesh) {
     card.end();
   };
   for (std::size_t t = 0; t < mesh.n_tets(); ++t) {
-    write_element("CTETRA", t + 1, mesh.body.number, mesh.tet(t).data(), mesh.nodes_per_tet);
+    write_element("CTETRA", t + 1, parts[mesh.part_of(t)].number, mesh.tet(t).data(), mesh.nodes_per_tet);
   }
   const char* const triangle = mesh.nodes_per_tet == 4 ? "CTRIA3" : "CTRIA6";
   for (std::size_t f = 0; f < mesh.n_faces(); ++f) {

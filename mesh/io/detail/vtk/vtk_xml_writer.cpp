@@ -162,7 +162,9 @@ std::pair<Arrays, Arrays> data_of_one_piece(const SolverMesh& mesh) {
 void write_vtu(const std::filesystem::path& path, const MeshFile& file) {
   check_sizes(file.point_data, file.mesh.V.size());
   check_sizes(file.cell_data, file.mesh.C.size());
-  write_grid(path, file.mesh.V, {ids_of(file.mesh.C), 4, VTK_TETRA}, file.point_data, file.cell_data);
+  std::vector<MeshPart> regions;
+  for (const auto& [number, name] : file.region_names) regions.push_back({name, static_cast<int>(number)});
+  write_grid(path, file.mesh.V, {ids_of(file.mesh.C), 4, VTK_TETRA}, file.point_data, file.cell_data, regions);
 }
 
 void write_vtu(const std::filesystem::path& path, const QuadraticTetMesh& mesh, const Arrays& point_data,
@@ -177,7 +179,7 @@ void write_vtu(const std::filesystem::path& path, const SolverMesh& mesh) {
   const bool linear = mesh.nodes_per_tet == 4;
   const Cells tets{mesh.tets, static_cast<std::size_t>(mesh.nodes_per_tet),
                    static_cast<std::uint8_t>(linear ? VTK_TETRA : VTK_QUADRATIC_TETRA)};
-  write_grid(path, mesh.nodes, tets, detail::with_node_sets(mesh), mesh.cell_data);
+  write_grid(path, mesh.nodes, tets, detail::with_node_sets(mesh), mesh.cell_data, mesh.regions);
 }
 
 void write_vtu_piece(const std::filesystem::path& path, const SolverMesh& mesh) {

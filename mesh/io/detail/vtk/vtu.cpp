@@ -27,6 +27,7 @@ struct Piece {
   std::vector<std::int64_t> offsets;
   std::vector<std::uint8_t> types;
   Data point_data, cell_data;
+  std::map<std::int64_t, std::string> region_names;
   bool has_points = false, has_types = false;
 };
 
@@ -71,12 +72,14 @@ class VtuReader {
   void take_cells(const detail::XmlArray& array, Piece& piece);
   void take_data(const detail::XmlArray& array, Data& data, std::uint64_t n);
   Piece joined();
+  void name_regions(Piece& piece) const;
 
   const std::filesystem::path& path_;
   detail::ByteStream source_;
   detail::XmlTags tags_;
   detail::ArrayReader arrays_;
   std::list<Piece> pieces_;
+  std::map<std::string, std::vector<std::int64_t>> field_data_;  ///< the first whole numbers of each array
 };
 
 Piece VtuReader::read() {
@@ -92,7 +95,9 @@ Piece VtuReader::read() {
     break;
   }
   arrays_.finish();
-  return joined();
+  Piece all = joined();
+  name_regions(all);
+  return all;
 }
 
 void VtuReader::open(const detail::XmlTag& tag) {
@@ -119,6 +124,14 @@ void VtuReader::take_array(const detail::XmlTag& tag) {
   const detail::XmlArray array = arrays_.array(tag);
   if (array.name == "faces" || array.name == "faceoffsets") source_.refuse("polyhedral cells are not read");
   const std::string_view section = tags_.parent();
+  const bool is_whole = array.type && array.type->kind != detail::NumberType::Kind::Float;
+  if (section == "FieldData" && is_whole && !array.name.empty() && !field_data_.contains(array.name)) {
+    std::vector<std::int64_t>& values = field_data_[array.name];
+    return arrays_.read(array, std::nullopt, {.integers = [&values](std::span<const std::int64_t> some) {
+                          for (const std::int64_t v : some)
+                            if (values.size() < 2) values.push_back(v);
+                        }});
+  }
   const bool is_of_a_piece =
       section == "PointData" || section == "CellData" || section == "Points" || section == "Cells";
   if (!is_of_a_piece || (array.type_name == "String" && section != "Points" && section != "Cells")) {
@@ -202,6 +215,20 @@ void append(Data& all, Data&& some) {
         at->second);
     ++at;
   }
+}
+
+/// Field data NAME = number are the names of regions, if each region has one.
+void VtuReader::name_regions(Piece& piece) const {
+  const auto found = piece.cell_data.find("region");
+  const auto* regions =
+      found == piece.cell_data.end() ? nullptr : std::get_if<std::vector<std::int64_t>>(&found->second);
+  if (!regions) return;
+  std::map<std::int64_t, std::string> names;
+  for (const auto& [name, values] : field_data_) {
+    if (values.size() == 1 && !names.emplace(values.front(), name).second) return;
+  }
+  if (std::all_of(regions->begin(), regions->end(), [&](std::int64_t r) { return names.contains(r); }))
+    piece.region_names = std::move(names);
 }
 
 Piece VtuReader::joined() {
@@ -293,6 +320,7 @@ MeshFile detail::read_vtu(const std::filesystem::path& path) {
   file.mesh.V = std::move(grid.points);
   file.point_data = std::move(grid.point_data);
   file.cell_data = std::move(grid.cell_data);
+  file.region_names = std::move(grid.region_names);
   keep(file.cell_data, kept, grid.n_cells);
   const auto point_number = [](std::size_t v) { return static_cast<std::int64_t>(v); };
   refuse_broken_tets(path, file.mesh, point_number, [&](std::size_t t) { return static_cast<std::int64_t>(kept[t]); });

@@ -79,6 +79,12 @@ class Hdf5Image {
   Handle access_, file_;
 };
 
+void put_faces(Hdf5Image& image, const SolverMesh& mesh) {
+  const std::vector<int> faces = mesh.faces();
+  image.put("faces", faces.data(), mesh.n_faces(), static_cast<std::size_t>(mesh.nodes_per_face()));
+  image.put("patch", FieldValues(detail::patch_numbers(mesh)));
+}
+
 /// One grid: its cells are the dataset `cells` of the HDF5 file.
 class XdmfWriter {
  public:
@@ -114,10 +120,11 @@ class XdmfWriter {
     }
   }
   /// As meshio does: XDMF has no word for it.
-  void names(const std::vector<MeshPart>& patches) {
-    file_.text("<Information Name=\"patches\"><![CDATA[<main>");
-    for (const MeshPart& patch : patches) {
-      file_.text("<map key=\"").text(patch.name).text("\" dim=\"2\">").number(patch.number).text("</map>");
+  void names(const char* kind, int dimension, const std::vector<MeshPart>& parts) {
+    file_.text("<Information Name=\"").text(kind).text("\"><![CDATA[<main>");
+    for (const MeshPart& part : parts) {
+      file_.text("<map key=\"").text(part.name).text("\" dim=\"").number(dimension).text("\">");
+      file_.number(part.number).text("</map>");
     }
     file_.text("</main>]]></Information>\n");
   }
@@ -151,11 +158,23 @@ void write_hdf5(const std::filesystem::path& path, const SolverMesh& mesh) {
     Hdf5Image image;
     image.put("nodes", reinterpret_cast<const double*>(mesh.nodes.data()), mesh.nodes.size(), 3);
     image.put("tets", mesh.tets.data(), mesh.n_tets(), static_cast<std::size_t>(mesh.nodes_per_tet));
-    const std::vector<int> faces = mesh.faces();
-    image.put("faces", faces.data(), mesh.n_faces(), static_cast<std::size_t>(mesh.nodes_per_face()));
-    image.put("patch", FieldValues(detail::patch_numbers(mesh)));
+    put_faces(image, mesh);
     for (const auto& [name, values] : detail::with_node_sets(mesh)) image.put("point_data/" + name, values);
     for (const auto& [name, values] : mesh.cell_data) image.put("cell_data/" + name, values);
+    bytes = image.bytes();
+  }
+  CheckedFile file(path);
+  file.text(bytes);
+  file.close();
+}
+
+void write_boundary_hdf5(const std::filesystem::path& path, const SolverMesh& mesh) {
+  require_consistent(mesh);
+  std::string bytes;
+  {
+    const QuietHdf5 quiet;
+    Hdf5Image image;
+    put_faces(image, mesh);
     bytes = image.bytes();
   }
   CheckedFile file(path);
@@ -168,8 +187,15 @@ void write_xdmf(const std::filesystem::path& path, const SolverMesh& mesh, const
   const bool linear = mesh.nodes_per_tet == 4;
   XdmfWriter out(path, mesh.nodes.size(), hdf5);
   out.grid("mesh", linear ? "Tetrahedron" : "Tetrahedron_10", "tets", mesh.n_tets(), mesh.nodes_per_tet);
+  std::map<std::string, FieldValues> first, others = mesh.cell_data;
+  if (!mesh.regions.empty()) {
+    // dolfinx reads the first attribute as the tags of cells.
+    if (auto region = others.extract("region")) first.insert(std::move(region));
+    out.names("regions", 3, mesh.regions);
+  }
+  out.attributes(first, "Cell", "cell_data/");
   out.attributes(detail::with_node_sets(mesh), "Node", "point_data/");
-  out.attributes(mesh.cell_data, "Cell", "cell_data/");
+  out.attributes(others, "Cell", "cell_data/");
   out.end();
 }
 
@@ -178,7 +204,7 @@ void write_boundary_xdmf(const std::filesystem::path& path, const SolverMesh& me
   const bool linear = mesh.nodes_per_tet == 4;
   XdmfWriter out(path, mesh.nodes.size(), hdf5);
   out.grid("boundary", linear ? "Triangle" : "Triangle_6", "faces", mesh.n_faces(), mesh.nodes_per_face());
-  out.names(mesh.patches);
+  out.names("patches", 2, mesh.patches);
   out.attribute<std::int64_t>("patch", "Cell", "patch", mesh.n_faces());
   out.attributes(mesh.boundary_data, "Node", "point_data/");
   out.end();
@@ -227,7 +253,7 @@ void write_boundary_xdmf(const std::filesystem::path& path, const XdmfShape& sha
   } else {
     out.grid("boundary", "Triangle", "faces", shape.n_faces, 3);
   }
-  out.names(shape.patches);
+  out.names("patches", 2, shape.patches);
   out.attribute<std::int64_t>("patch", "Cell", "patch", shape.n_faces);
   out.end();
 }
