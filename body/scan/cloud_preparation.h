@@ -17,7 +17,7 @@ enum class SampleMark : std::uint8_t {
   SmallComponent = 2,  ///< dropped with a small piece far from the rest
   NoNormal = 3,        ///< dropped: its neighbours define no normal
   Turned = 4,          ///< its given normal was turned over
-  Doubtful = 5,        ///< which side is outside is a guess
+  Doubtful = 5,        ///< its outward side is a guess
 };
 
 struct MarkedSample {

@@ -13,10 +13,10 @@ namespace umtet::detail {
 struct VertexField {
   std::string name;
   std::vector<double> values;
-  SceneHead::Range range;  ///< of the colours
+  SceneHead::Range range;  ///< range of the colours
 };
 
-/// Returns a scene of triangles without tets: the arrays of ReportScene as far as they exist. Triangles beyond `most`
+/// Returns a scene of triangles without tets: those arrays of ReportScene that exist. Triangles beyond `most`
 /// are coarsened.
 /// @param shift  added to the vertices
 ReportScene triangle_scene(const std::vector<Vec3>& V, const std::vector<Triangle>& F, const Vec3& shift,
