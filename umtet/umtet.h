@@ -12,6 +12,7 @@
 #include "body/fidelity/verdict.h"
 #include "body/options.h"
 #include "body/patches/boundary_division.h"
+#include "body/regions/label_regions.h"
 #include "body/regions/region_bodies.h"
 #include "body/scan/scan_reports.h"
 #include "body/shared_function.h"

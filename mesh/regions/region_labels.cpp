@@ -20,6 +20,10 @@ constexpr double kLeastGain = 1e-6;  // less is rounding
 constexpr std::size_t kVerticesPerPoll = 1 << 10;
 constexpr double kLastTemperature = .02;  // the cost of a distance of .45 edges
 constexpr std::uint32_t kSeed = 1;
+// With a greater share of bad vertices a body is too coarse as a whole, and no search helps.
+constexpr double kMostBad = .05;
+constexpr std::size_t kFewBad = 200;
+constexpr int kFewestSweeps = 30;
 constexpr int kMostFailures = 2;   // of annealing around a vertex: it is random
 constexpr int kAnnealedRings = 2;  // three find no more, in twice the time
 
@@ -47,22 +51,37 @@ class LabelSearch {
     }
     for (int round = 0; round < params_.annealing_rounds; ++round) {
       const std::size_t before = report.n_changes;
-      for (const int v : bad_vertices())
-        if (is_bad(v) && n_failures_[v] < kMostFailures && !anneal_around(v, context, report)) ++n_failures_[v];
+      const std::vector<int> bad = bad_vertices();
+      if (static_cast<double>(bad.size()) > kMostBad * static_cast<double>(count_interface())) break;
+      const int sweeps = sweeps_for(bad.size());
+      for (const int v : bad)
+        if (is_bad(v) && n_failures_[v] < kMostFailures && !anneal_around(v, sweeps, context, report)) ++n_failures_[v];
       if (report.n_changes == before) break;
       open_around_bad(1);
       change_singles(context, report);
     }
+    report.n_interface = count_interface();
     for (std::size_t v = 0; v < costs_.size(); ++v) {
       const RegionSet regions = costs_.regions(static_cast<int>(v));
       if (std::popcount(regions) < 2) continue;
-      ++report.n_interface;
       if (!costs_.is_valid(static_cast<int>(v))) report.invalid.push_back({band_.id(v), regions});
     }
   }
 
  private:
   bool is_bad(std::size_t v) const { return costs_.cost(static_cast<int>(v)) >= params_.bad_cost; }
+
+  /// Many bad vertices share the sweeps of kFewBad.
+  int sweeps_for(std::size_t n_bad) const {
+    const std::size_t share = static_cast<std::size_t>(params_.annealing_sweeps) * kFewBad / std::max(n_bad, kFewBad);
+    return std::max(static_cast<int>(share), std::min(kFewestSweeps, params_.annealing_sweeps));
+  }
+
+  std::size_t count_interface() const {
+    std::size_t n = 0;
+    for (std::size_t v = 0; v < costs_.size(); ++v) n += std::popcount(costs_.regions(static_cast<int>(v))) > 1 ? 1 : 0;
+    return n;
+  }
 
   std::size_t count_invalid() const {
     std::size_t n = 0;
@@ -198,7 +217,7 @@ class LabelSearch {
 
   /// Simulated annealing of the labels around a bad vertex. The best labels that it meets are kept.
   /// @return whether they cost less than before
-  bool anneal_around(int centre, const Context& context, RegionLabels& report) {
+  bool anneal_around(int centre, int sweeps, const Context& context, RegionLabels& report) {
     context.poll();
     const std::vector<int> ball = movable_around(centre);
     if (ball.empty()) return false;
@@ -209,9 +228,9 @@ class LabelSearch {
     read(start);
     std::vector<std::uint8_t> best = start;
     double now = 0, least = -kLeastGain;
-    const double cooling = std::pow(kLastTemperature / params_.temperature, 1. / params_.annealing_sweeps);
+    const double cooling = std::pow(kLastTemperature / params_.temperature, 1. / sweeps);
     double temperature = params_.temperature;
-    for (int sweep = 0; sweep < params_.annealing_sweeps; ++sweep, temperature *= cooling)
+    for (int sweep = 0; sweep < sweeps; ++sweep, temperature *= cooling)
       for (std::size_t k = 0; k < ball.size(); ++k) {
         const double change = try_random_label(ball[random_() % ball.size()], temperature);
         now += change;

@@ -31,7 +31,7 @@ struct RegionLabelParams {
   double poor_quality = .5;
   double bad_cost = .4;        ///< a vertex that costs as much is bad: its surroundings are searched longer; > 0
   int annealing_rounds = 4;    ///< over the vertices that are still bad; >= 0
-  int annealing_sweeps = 300;  ///< over the vertices around a bad one; >= 1
+  int annealing_sweeps = 300;  ///< over the vertices around a bad one, fewer where more than 200 are bad; >= 1
   double temperature = 4;      ///< of the first sweep: the cost of four vertices that are not valid; > 0
 };
 

@@ -52,8 +52,10 @@ std::optional<std::int64_t> part_of(const Grid& grid, const MeshParameters& p, D
   if (n_at_wall > 0)
     domain.notices.emplace_back(p.level_set + ": the body reaches the wall of the image and ends flat there");
   if (p.part == 0 && parts.size() > 1) {
-    domain.notices.emplace_back(fmt::format("{}: the body consists of all parts: {}", p.level_set, parts_text(parts)),
-                                std::vector<Remedy>{{Change::Use, {Option{keys::mesh::part}, "N"}, "selects one"}});
+    domain.notices.emplace_back(
+        fmt::format("{}: the body consists of all parts: {} (umtet regions makes a region of each)", p.level_set,
+                    parts_text(parts)),
+        std::vector<Remedy>{{Change::Use, {Option{keys::mesh::part}, "N"}, "selects one"}});
   }
   return p.part > 0 ? std::optional(p.part) : std::nullopt;
 }
