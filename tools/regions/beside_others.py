@@ -68,8 +68,8 @@ def inr_of(label, path):
 def of_gmsh(script, half, edge, folder):
     geo = folder / "regions.geo"
     geo.write_text(f"SetFactory('OpenCASCADE'); Box(1) = {{{-half},{-half},{-half}, {2 * half},{2 * half},{2 * half}}};\n"
-                   f"{script}\no() = Volume{{:}}; o() -= {{1}}; BooleanFragments{{Volume{{1}}; Delete;}}{{Volume{{o()}}; Delete;}}\n"
-                   "v() = Volume{:}; For k In {0:#v()-1} Physical Volume(k + 1) = {v(k)}; EndFor\n"
+                   f"{script}\no() = Volume{{:}}; o() -= {{1}}; f() = BooleanFragments{{Volume{{1}}; Delete;}}{{Volume{{o()}}; Delete;}};\n"
+                   "For k In {0:#f()-1}\n  Physical Volume(k + 1) = {f(k)};\nEndFor\n"
                    f"Mesh.CharacteristicLengthMin = {edge}; Mesh.CharacteristicLengthMax = {edge};\n")
     return timed(["gmsh", geo, "-3", "-algo", "hxt", "-optimize", "-optimize_threshold", "0.5", "-nt", "1", "-format",
                   "msh41", "-o", folder / "gmsh.msh", "-v", "1"])
