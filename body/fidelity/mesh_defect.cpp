@@ -7,6 +7,7 @@
 namespace umtet {
 namespace {
 
+// In the order of DefectKind.
 constexpr std::array<const char*, 8> kDefectWords = {"folded", "off",      "filled", "cut",
                                                      "thin",   "topology", "missed", "edges"};
 

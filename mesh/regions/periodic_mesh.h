@@ -21,7 +21,7 @@ struct PeriodicPair {
 /// A mesh of one period. Its copies, shifted by whole sides, fill space without gaps or overlaps.
 struct PeriodicMesh {
   RegionMesh mesh;
-  Vec3 sides = Vec3::Zero();  ///< of the period, model units
+  Vec3 sides = Vec3::Zero();  ///< sides of the period, model units
   std::vector<PeriodicPair>
       pairs;  ///< by vertex and copy; every vertex with several copies is the `vertex` of all others
 };

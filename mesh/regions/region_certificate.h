@@ -28,8 +28,8 @@ struct InterfaceMeasures {
   int region = 0, other = 0;  ///< the greater region, and the lesser one
   std::size_t n_faces = 0;
   double area = 0;                   ///< model units^2
-  double max_vertex_distance = 0;    ///< of a corner from the sheet, in h
-  double max_centroid_distance = 0;  ///< of a centroid from the sheet, in h
+  double max_vertex_distance = 0;    ///< greatest distance of a corner from the sheet, in h
+  double max_centroid_distance = 0;  ///< greatest distance of a centroid from the sheet, in h
   double min_cos_normal = 1;         ///< cos(face normal, grad f_ab) at the foot of the centroid
   std::size_t n_off = 0;             ///< corners of faces farther than kVertexTolerance h from the sheet
   std::size_t n_folded = 0;          ///< faces with cos <= 0, or without a foot point near their centroid

@@ -32,7 +32,7 @@ struct RegionLabelParams {
   double bad_cost = .4;        ///< a vertex that costs as much is bad: its surroundings are searched longer; > 0
   int annealing_rounds = 4;    ///< over the vertices that are still bad; >= 0
   int annealing_sweeps = 300;  ///< over the vertices around a bad one, fewer where more than 200 are bad; >= 1
-  double temperature = 4;      ///< of the first sweep: the cost of four vertices that are not valid; > 0
+  double temperature = 4;      ///< temperature of the first sweep: the cost of four vertices that are not valid; > 0
 };
 
 /// All broken constraints, not just the first.
@@ -41,7 +41,7 @@ std::vector<std::string> problems(const RegionLabelParams&);
 /// A background vertex around which the tets of the regions do not lie as at a smooth sheet, curve or corner.
 struct InvalidVertex {
   std::int64_t background_vertex;
-  RegionSet regions;  ///< of the tets around it
+  RegionSet regions;  ///< the regions of the tets around it
 };
 
 /// A region for each background vertex.
@@ -49,8 +49,8 @@ struct RegionLabels {
   std::vector<std::uint8_t> of_vertex;  ///< per id of the background
   std::vector<InvalidVertex> invalid;   ///< ascending
   std::size_t n_interface = 0;          ///< vertices with tets of several regions
-  std::size_t n_invalid_at_start = 0;   ///< of them: not valid before any change
-  std::size_t n_changes = 0;            ///< of labels
+  std::size_t n_invalid_at_start = 0;   ///< interface vertices that were not valid before any change
+  std::size_t n_changes = 0;            ///< changes of labels
   std::size_t n_psi_evaluations = 0;
   bool leaves_background = false;  ///< a vertex of a region other than 0 is on the boundary of the background
 };

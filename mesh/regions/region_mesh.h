@@ -22,7 +22,7 @@ namespace umtet {
 /// Parameters of make_region_mesh().
 struct RegionMeshParams {
   RegionLabelParams labels = {};
-  int layers = 3;  ///< of vertices on either side of the interfaces that move; >= 1
+  int layers = 3;  ///< layers of vertices on either side of the interfaces that move; >= 1
   /// A vertex that has not arrived after ten rounds does not arrive later.
   StratifiedProjectionParams projection = {.max_rounds = 10, .smoothing = {.max_sweeps = 4}};
   /// Few sweeps: smoothing carries one bad place at a curve to all tets around it, which flips then find harder to
@@ -43,7 +43,7 @@ struct RegionDefect {
   };
   Kind kind;
   Vec3 where;
-  std::vector<int> regions;  ///< that meet there, ascending
+  std::vector<int> regions;  ///< regions that meet there, ascending
 };
 
 /// A face between two regions, or between a region and what is not part of the mesh.
@@ -51,8 +51,8 @@ struct InterfaceFace {
   Triangle face;  ///< outward from the greater region
   int region;     ///< the greater one
   int other;      ///< the lesser one
-  int tet;        ///< of the greater region
-  int other_tet;  ///< of the lesser one; -1: it is not part of the mesh
+  int tet;        ///< the tet in the greater region
+  int other_tet;  ///< the tet in the lesser region; -1: it is not part of the mesh
 };
 
 /// A mesh with tets of several regions that share their interfaces.

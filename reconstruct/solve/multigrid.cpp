@@ -14,6 +14,7 @@ namespace umtet {
 
 namespace {
 
+// Values in a chunk: enough that a task costs nothing beside it.
 constexpr std::ptrdiff_t kValuesInChunk = 1 << 14;
 
 // f(begin, end) over fixed chunks of [0, n).

@@ -14,6 +14,7 @@ namespace umtet {
 
 namespace {
 
+// Nodes of a block are the lanes of one array.
 constexpr int kBlockNodes = LatticeBlocks::kNodes;
 using Block = Eigen::Array<float, kBlockNodes, 1>;
 
