@@ -15,6 +15,7 @@ fs::path failure_file(const CasePaths& paths) { return paths.root / "failure.jso
 }  // namespace
 
 void write_failure(const CasePaths& paths, const CaseFailure& failure) {
+  if (fs::exists(CasePaths{paths.root}.certificate())) return;
   const bool has_stage = std::any_of(kStages.begin(), kStages.end(), [&](Stage stage) {
     return fs::exists(paths.record(stage)) || fs::exists(CasePaths{paths.root}.record(stage));
   });

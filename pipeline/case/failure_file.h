@@ -15,8 +15,8 @@ struct CaseFailure {
   std::string message;
 };
 
-/// Writes the file atomically if the case contains a finished stage or the remains of a mesh; else does nothing.
-/// \throw std::system_error
+/// Writes the file atomically if the case contains a finished stage or the remains of a mesh, and no certified mesh of
+/// a former run, which stays its result; else does nothing. \throw std::system_error
 void write_failure(const CasePaths& paths, const CaseFailure& failure);
 /// Returns the failure of the last run; none if it succeeded, or if the file is damaged.
 std::optional<CaseFailure> read_failure(const CasePaths& paths);

@@ -56,6 +56,8 @@ def promised(case):
         content = file.read_bytes()
         if file.suffix == ".json":
             document = json.loads(content)
+            if name == "failure.json":  # whole, but another one after each fault
+                continue
             document.pop("run", None)
             content = json.dumps(document).encode()
         found[name] = content

@@ -25,7 +25,7 @@ TEST_F(Program, HelpIsAboutTheCommand) {
     EXPECT_NE(r.out.find("\nExit codes: "), std::string::npos) << r.out;
   }
   const std::string help = run("reconstruct --help").out;
-  EXPECT_NE(std::regex_replace(help, std::regex("\\s+"), " ").find("{area,paper} (default area)"), std::string::npos);
+  EXPECT_NE(std::regex_replace(help, std::regex("\\s+"), " ").find("{auto,smooth,flat,none} (default auto)"), std::string::npos);
   EXPECT_EQ(run("rum --help").code, 2);
   EXPECT_EQ(Json::parse(run("--json mesh nowhere").out)["exit_code"], 2);
 }
