@@ -71,7 +71,8 @@ void check_periods(const RegionDomain& domain, const Box& box) {
     double greatest = 0, difference = 0;
     int axis = 0;
     for (int i = 0; i < kProbes * kProbes * kProbes; ++i) {
-      const Vec3 at = Vec3(i % kProbes, i / kProbes % kProbes, i / kProbes / kProbes).array() / kProbes;
+      const int row = i / kProbes, layer = row / kProbes;
+      const Vec3 at = Vec3(i % kProbes, row % kProbes, layer) / kProbes;
       const Vec3 x = box.min() + at.cwiseProduct(box.sizes());
       const double value = f(x, nullptr, nullptr);
       greatest = std::max(greatest, std::abs(value));
