@@ -25,9 +25,9 @@ std::vector<std::string> names_of(const std::vector<LabelPart>& parts, const std
   if (parts.empty()) throw UsageError("all voxels are 0, so there is no body");
   if (parts.size() >= kMostRegions)
     throw UsageError(formatted("%zu labels: a mesh has at most %d regions", parts.size(), kMostRegions - 1));
-  for (const auto& [label, name] : names)
-    if (std::none_of(parts.begin(), parts.end(), [&](const LabelPart& p) { return p.number == label; }))
-      throw UsageError(formatted("%s: no voxel has the label %d", name.c_str(), label));
+  for (const auto& named : names)
+    if (std::none_of(parts.begin(), parts.end(), [&](const LabelPart& p) { return p.number == named.first; }))
+      throw UsageError(formatted("%s: no voxel has the label %d", named.second.c_str(), named.first));
   std::vector<std::string> list = {"outside"};
   for (const LabelPart& part : parts) {
     const auto named = names.find(static_cast<int>(part.number));

@@ -94,10 +94,12 @@ std::vector<int> pinched_vertices(const TetMesh& mesh) {
     }
     for (const int v : {edge.first, edge.second}) sets.unite(corner(two[0], v), corner(two[1], v));
   }
-  for (const auto& [v, around] : of_vertex)
-    if (std::any_of(around.begin(), around.end(),
-                    [&, v = v](int f) { return sets.find(corner(f, v)) != sets.find(corner(around[0], v)); }))
-      pinched.push_back(v);
+  for (const auto& of : of_vertex) {
+    const auto fan_of = [&](int f) { return sets.find(corner(f, of.first)); };
+    const std::vector<int>& around = of.second;
+    if (std::any_of(around.begin(), around.end(), [&](int f) { return fan_of(f) != fan_of(around[0]); }))
+      pinched.push_back(of.first);
+  }
   std::sort(pinched.begin(), pinched.end());
   pinched.erase(std::unique(pinched.begin(), pinched.end()), pinched.end());
   return pinched;

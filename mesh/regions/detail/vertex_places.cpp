@@ -62,7 +62,7 @@ Vec3 VertexPlaces::at(std::size_t vertex, RegionSet regions, const Vec3& x, doub
   if (std::popcount(regions) < 2) return x;
   for (const Place& p : known_[vertex])
     if (p.regions == regions) return p.place;
-  const Vec3 place = common_zero(domain_, patches_between(domain_, regions), x, h);
+  Vec3 place = common_zero(domain_, patches_between(domain_, regions), x, h);
   known_[vertex].push_back({regions, place});
   return place;
 }
