@@ -104,6 +104,7 @@ RegionBodyMesh mesh_label_regions(const Grid& grid, const std::map<int, std::str
   std::vector<std::string> all_names = names_of(parts, names);
   options.context.report("fit", 0);
   std::vector<double> labels;
+  labels.reserve(parts.size());
   for (const LabelPart& part : parts) labels.push_back(part.number);
   std::vector<std::shared_ptr<const LabelLevelSet>> functions;
   std::vector<PatchFunction> psi;
