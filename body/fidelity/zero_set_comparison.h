@@ -22,7 +22,7 @@ struct ZeroSetComparison {
   std::optional<MeshDefect> defect;
 };
 
-/// What compare_with_domain() needs besides the mesh and the pieces.
+/// Input of compare_with_domain() besides the mesh and the pieces.
 struct ComparisonParams {
   const PointThickness& thickness;
   const SurfaceDistance* surface;  ///< null: the mesh has no boundary

@@ -48,7 +48,7 @@ Box box_of(const Grid& grid, const std::vector<LabelPart>& parts) {
   return box;
 }
 
-/// What the mesh is compared with.
+/// Measures the voxels of each label.
 std::vector<RegionVoxels> voxels_of(const Grid& grid, const std::vector<LabelPart>& parts,
                                     const std::vector<std::shared_ptr<const LabelLevelSet>>& functions) {
   std::vector<RegionVoxels> list;

@@ -13,8 +13,8 @@ namespace umtet {
 /// Every label has a level set of its own (fit_labels()), and a point belongs to the label whose level set is least.
 ///
 /// Without h and a number of tets, three edges fit into the thinnest places of the labels, with 100,000 to 1,000,000
-/// tets. A label fails that has no tet, whose volume differs by more than kLabelVolume from that of its voxels, or that
-/// has another number of pieces.
+/// tets. A label fails if it has no tet, if its volume differs by more than kLabelVolume from that of its voxels, or if
+/// it has another number of pieces.
 ///
 /// @param names  of labels; the others are called label1, label2 ...
 /// \pre kind_of(grid) is GridKind::Segmentation
