@@ -17,7 +17,7 @@ struct RegionBody {
   std::vector<Vec3> samples = {};  ///< on its boundary, from which psi was fitted
 };
 
-/// Which body a point belongs to that is inside of several.
+/// The rule that assigns a point inside several bodies to one of them.
 enum class Overlap {
   Later,  ///< the last of them (RegionDomain::of_bodies())
   Least   ///< the one whose psi is least (RegionDomain::of_least()); bodies meet where their functions are equal

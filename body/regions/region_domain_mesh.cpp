@@ -76,7 +76,7 @@ void make_in_box(const RegionDomain& domain, const Box& bodies, const RegionBody
   made.mesh = make_region_mesh(domain, background, {.has_outside = options.has_outside}, options.context);
 }
 
-/// What the sides of a periodic mesh lack; empty if they match.
+/// Returns the reasons why the sides of a periodic mesh do not match; empty if they do.
 std::vector<std::string> periodic_failures(const RegionBodyMesh& made, bool has_outside) {
   std::vector<std::string> reasons;
   if (!made.match) return reasons;
